@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every third-party package the project uses, found once. TBB comes first: OpenVDB's module defines TBB::tbb
+# itself, and a later find_package(TBB CONFIG) would stop with "targets already defined".
+find_package(TBB CONFIG REQUIRED)
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 CONFIG REQUIRED)
+find_package(PkgConfig REQUIRED)
+
+# Debian keeps OpenVDB's find module in its multiarch library folder.
+list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+find_package(OpenVDB REQUIRED)
+
+# flann's CMake target misses lz4; its pkg-config file would drag in MPI and HDF5.
+find_package(flann CONFIG REQUIRED)
+find_library(VDBFUSE_LZ4_LIBRARY lz4 REQUIRED)
+
+find_package(embree 3 CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
+find_package(libjpeg-turbo CONFIG REQUIRED)
+
+if(VDBFUSE_WITH_PCL)
+  # find_package(PCL) drags in VTK and fails beside OpenVDB; the pkg-config targets work.
+  pkg_check_modules(PCL REQUIRED IMPORTED_TARGET pcl_common pcl_io)
+endif()
+if(VDBFUSE_BUILD_TOOL)
+  find_package(CLI11 CONFIG REQUIRED)
+endif()
+if(VDBFUSE_BUILD_TESTS)
+  find_package(GTest CONFIG REQUIRED)
+endif()
+
+# A compiler cache, where there is one, makes clean builds cheap.
+find_program(VDBFUSE_CCACHE ccache)
+if(VDBFUSE_CCACHE AND PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${VDBFUSE_CCACHE})
+endif()

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every subcommand is one file with one function that declares its options and, when its subcommand is chosen, sets
+// the action. What runs prints results to stdout and words to stderr, and throws vdbfuse::Error when it fails (exit
+// code 1).
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace vdbfuse::tool {
+
+/// Set by the subcommand that was chosen; main() runs it after all options have been parsed.
+using Action = std::function<void()>;
+
+}  // namespace vdbfuse::tool

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "commands.h"
+#include "vdbfuse/base/errors.h"
+
+namespace {
+
+// Exit codes of the tool, whatever the parser library returns.
+constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
+
+int run(const vdbfuse::tool::Action& action) {
+  try {
+    action();
+    return kDone;
+  } catch (const vdbfuse::Cancelled&) {
+    std::fprintf(stderr, "vdbfuse: interrupted\n");
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "vdbfuse: out of memory; try a larger --voxel\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "vdbfuse: %s\n", error.what());
+  }
+  return kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Depth maps to watertight surfaces by probabilistic visibility.", "vdbfuse");
+  app.set_version_flag("--version", "vdbfuse " VDBFUSE_VERSION);
+  app.require_subcommand(1);
+  vdbfuse::tool::Action action;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongUsage;
+  }
+  return run(action);
+}
