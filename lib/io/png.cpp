@@ -3,6 +3,8 @@
 
 #include <spng.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
 #include <span>
@@ -39,7 +41,7 @@ class Decoder {
  public:
   Decoder(const std::filesystem::path& path, std::size_t limit)
       : path_(path), bytes_(readFileBytes(path, limit)), context_(spng_ctx_new(0), spng_ctx_free) {
-    if (bytes_.empty()) throw IoError(path_, "", "a PNG file", "an empty file");
+    checkSignature();
     spng_set_png_buffer(context_.get(), bytes_.data(), bytes_.size());
     check(spng_get_ihdr(context_.get(), &ihdr_));
     checkImageSize(path_, "", ihdr_.width, ihdr_.height);
@@ -49,6 +51,7 @@ class Decoder {
 
   void decode(void* pixels, std::size_t size, int format) {
     check(spng_decode_image(context_.get(), pixels, size, format, 0));
+    check(spng_decode_chunks(context_.get()));  // up to the end mark: a file cut behind its pixels is cut too
   }
 
   // Deflate cannot make more than 1032 bytes of one: a file this short need not cost us memory.
@@ -57,9 +60,16 @@ class Decoder {
   }
 
  private:
+  void checkSignature() const {
+    static constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    if (bytes_.empty()) throw IoError(path_, "", "a PNG file", "an empty file");
+    const auto compared = static_cast<std::ptrdiff_t>(std::min(bytes_.size(), kSignature.size()));
+    if (!std::equal(bytes_.begin(), bytes_.begin() + compared, kSignature.begin()))
+      throw IoError(path_, "", "a PNG file", "another signature");
+  }
+
   void check(int code) const {
     if (code == SPNG_OK) return;
-    if (code == SPNG_ESIGNATURE) throw IoError(path_, "", "a PNG file", "another signature");
     if (code == SPNG_IO_EOF) truncated();
     throw IoError(path_, "", "a sound PNG file", spng_strerror(code));
   }

@@ -34,6 +34,12 @@ std::string linePlace(std::span<const TextLine> lines, std::size_t index) {
   return "line " + std::to_string(lines.empty() ? 1 : lines.back().number + 1);
 }
 
+std::string numberText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextLine& line) {
   std::vector<double> numbers;
   for (const std::string& word : line.words) {
