@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "io/file_bytes.h"
 #include "io/folder.h"
+#include "io/image_size.h"
 #include "io/mvsnet_camera.h"
 #include "io/stored_depth.h"
 #include "io/text_lines.h"

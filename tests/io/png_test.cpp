@@ -128,9 +128,9 @@ TEST(Png, OtherKindsOfFileAreNamed) {
   EXPECT_EQ(messageOf<IoError>([&] { readPngRgb(path); }),
             path.string() + ": expected a PNG file, found an empty file");
   EXPECT_EQ(messageOf<IoError>([&] { readPngRgb(folder / "none.png"); }),
-            (folder / "none.png").string() + ": expected a file, found nothing of that name");
+            (folder / "none.png").string() + ": expected a file to read, found none");
   EXPECT_EQ(messageOf<IoError>([&] { readPngRgb(folder.path()); }),
-            folder.path().string() + ": expected a file, found a folder");
+            folder.path().string() + ": expected a file to read, found a folder");
 }
 
 TEST(Png, DamagedPixelsAreRefused) {
