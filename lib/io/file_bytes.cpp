@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "file_bytes.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
+#include <limits>
 #include <system_error>
 
 #include "vdbfuse/base/errors.h"
@@ -12,19 +14,29 @@ namespace vdbfuse::io {
 
 namespace fs = std::filesystem;
 
-std::string readFileBytes(const fs::path& path) {
+std::uint64_t fileSize(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw IoError(path, "", "a file to read", "none");
   if (fs::is_directory(status)) throw IoError(path, "", "a file to read", "a folder");
   if (!fs::is_regular_file(status)) throw IoError(path, "", "a regular file to read", "a special file");
+  const std::uint64_t size = fs::file_size(path, error);
+  if (error) throw IoError(path, "cannot be read: " + error.message());
+  return size;
+}
+
+std::string readFileStart(const fs::path& path, std::size_t count) {
+  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(fileSize(path), count)), '\0');
   std::ifstream file(path, std::ios::binary);
   if (!file) throw IoError(path, "cannot be opened: " + std::generic_category().message(errno));
-  std::string bytes(fs::file_size(path), '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (static_cast<std::size_t>(file.gcount()) != bytes.size())
     throw IoError(path, "cannot be read to its end");
   return bytes;
+}
+
+std::string readFileBytes(const fs::path& path) {
+  return readFileStart(path, std::numeric_limits<std::size_t>::max());
 }
 
 void writeFileBytes(const fs::path& path, std::string_view bytes) {
