@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/io/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string errorText(int code) { return std::generic_category().message(code); }
+
+fs::path followLink(const fs::path& target) {
+  std::error_code error;
+  if (!fs::is_symlink(target, error)) return target;
+  const fs::path followed = fs::weakly_canonical(target, error);
+  return error ? target : followed;
+}
+
+// Renaming over a device (/dev/null) would replace the device itself.
+void refuseUnlessRegularOrNew(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (!fs::exists(status)) return;
+  if (fs::is_directory(status)) throw IoError(target, "", "a file to write", "a folder");
+  if (!fs::is_regular_file(status)) throw IoError(target, "", "a regular file to write", "a special file");
+  if (access(target.c_str(), W_OK) != 0) throw IoError(target, "", "a writable file", errorText(errno));
+}
+
+// Not mkstemp: its files are readable by their owner only, whatever the umask.
+fs::path createBeside(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  for (;;) {
+    const std::string unique = ".partial-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
+    const fs::path name = "." + target.stem().string() + unique + target.extension().string();
+    fs::path temporary = target.parent_path() / name;
+    const int file = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      close(file);
+      return temporary;
+    }
+    if (errno != EEXIST) throw IoError(target, "", "a folder that can be written to", errorText(errno));
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(followLink(target)) {
+  if (!target_.has_filename()) throw IoError(target_, "", "the name of a file to write", "none");
+  refuseUnlessRegularOrNew(target_);
+  temporary_ = createBeside(target_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void AtomicFile::commit() {
+  std::error_code error;
+  fs::rename(temporary_, target_, error);
+  if (error) throw IoError(target_, "cannot be put in place: " + error.message());
+  committed_ = true;
+}
+
+}  // namespace vdbfuse

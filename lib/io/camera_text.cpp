@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/camera_text.h"
+
+#include <cmath>
+#include <sstream>
+
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse {
+namespace {
+
+// As many decimals as are needed to tell it from the expected number, not more.
+std::string shortText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string rowText(const Eigen::RowVectorXd& row) {
+  std::string text;
+  for (const double value : row) text += (text.empty() ? "" : " ") + shortText(value);
+  return text;
+}
+
+}  // namespace
+
+RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::string& place,
+                              const Eigen::MatrixXd& matrix) {
+  constexpr double kLastRowTolerance = 1e-6;
+  Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
+  pose.topRows(matrix.rows()) = matrix;
+  const Eigen::RowVector4d last(0, 0, 0, 1);
+  if ((pose.row(3) - last).cwiseAbs().maxCoeff() > kLastRowTolerance)
+    throw IoError(path, place, "a pose whose last row is 0 0 0 1", rowText(pose.row(3)));
+  const Eigen::Matrix3d rotation = pose.topLeftCorner<3, 3>();
+  if (rotation.determinant() <= 0)
+    throw IoError(path, place, "a rotation", "a matrix with determinant " + shortText(rotation.determinant()));
+  if (rotationError(rotation) > kRotationTolerance)
+    throw IoError(path, place, "a rotation", "a matrix R with |RᵀR - 1| = " + shortText(rotationError(rotation)));
+  return rigidFromMatrix(pose);
+}
+
+Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place, const Eigen::MatrixXd& matrix,
+                          int width, int height) {
+  if (matrix(0, 1) != 0 || matrix(1, 0) != 0) {
+    throw IoError(path, place, "intrinsics without skew",
+                  shortText(matrix(0, 1)) + " and " + shortText(matrix(1, 0)) + " beside the focal lengths");
+  }
+  if (matrix.row(2) != Eigen::RowVector3d(0, 0, 1))
+    throw IoError(path, place, "intrinsics whose last row is 0 0 1", rowText(matrix.row(2)));
+  if (!(matrix(0, 0) > 0 && matrix(1, 1) > 0)) {
+    throw IoError(path, place, "focal lengths above 0", shortText(matrix(0, 0)) + " and " + shortText(matrix(1, 1)));
+  }
+  Pinhole camera;
+  camera.width = width, camera.height = height;
+  camera.fx = matrix(0, 0), camera.fy = matrix(1, 1);
+  camera.cx = matrix(0, 2), camera.cy = matrix(1, 2);
+  return camera;
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Matrices from text files made into poses and cameras, or refused with the line they stand in.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+
+#include "vdbfuse/geometry/projection.h"
+#include "vdbfuse/geometry/rigid_transform.h"
+
+namespace vdbfuse {
+
+/// rigidFromMatrix() with IoError at `place` instead of InvalidArgument. `matrix` is 3×4 or 4×4.
+RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::string& place,
+                              const Eigen::MatrixXd& matrix);
+
+/// The camera of a 3×3 matrix (fx 0 cx; 0 fy cy; 0 0 1) for images of the given size. Throws IoError when the
+/// matrix is of another form.
+Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place, const Eigen::MatrixXd& matrix,
+                          int width, int height);
+
+}  // namespace vdbfuse

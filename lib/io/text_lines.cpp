@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/text_lines.h"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+#include "io/file_bytes.h"
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse {
+
+std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
+  constexpr std::size_t kMaxBytes = 1 << 20;
+  const std::uint64_t size = fileBytes(path);
+  if (size > kMaxBytes) {
+    throw IoError(path, "", "a text file of at most 1048576 bytes", std::to_string(size) + " bytes");
+  }
+  const std::vector<unsigned char> bytes = readFileBytes(path);
+  std::istringstream text(std::string(bytes.begin(), bytes.end()));
+  std::vector<TextLine> lines;
+  std::string content;
+  for (int number = 1; std::getline(text, content); ++number) {
+    TextLine line{number, {}};
+    std::istringstream words(content);
+    for (std::string word; words >> word;) line.words.push_back(word);
+    if (!line.words.empty()) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::string linePlace(std::span<const TextLine> lines, std::size_t index) {
+  if (index < lines.size()) return "line " + std::to_string(lines[index].number);
+  return "line " + std::to_string(lines.empty() ? 1 : lines.back().number + 1);
+}
+
+std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextLine& line) {
+  std::vector<double> numbers;
+  for (const std::string& word : line.words) {
+    // from_chars refuses the leading plus that printf("%+e") writes.
+    const char* begin = word.data() + (word.size() > 1 && word[0] == '+' ? 1 : 0);
+    const char* end = word.data() + word.size();
+    double value = 0;
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    if (error != std::errc() || stop != end || !std::isfinite(value))
+      throw IoError(path, "line " + std::to_string(line.number), "a finite number", "'" + word + "'");
+    numbers.push_back(value);
+  }
+  return numbers;
+}
+
+Eigen::MatrixXd readMatrix(const std::filesystem::path& path, std::span<const TextLine> lines, std::size_t first,
+                           int rows, int columns, const std::string& what) {
+  Eigen::MatrixXd matrix(rows, columns);
+  for (int row = 0; row < rows; ++row) {
+    const std::size_t index = first + static_cast<std::size_t>(row);
+    if (index >= lines.size()) throw IoError(path, linePlace(lines, index), what, "the end of the file");
+    const std::vector<double> numbers = finiteNumbers(path, lines[index]);
+    if (numbers.size() != static_cast<std::size_t>(columns))
+      throw IoError(path, linePlace(lines, index), what, std::to_string(numbers.size()) + " numbers in a row");
+    matrix.row(row) = Eigen::Map<const Eigen::RowVectorXd>(numbers.data(), columns);
+  }
+  return matrix;
+}
+
+}  // namespace vdbfuse
