@@ -31,20 +31,35 @@ struct Ray {
   Vector3d at(double depth) const { return origin + depth * direction; }
 };
 
-// Moves a hit on the mesh onto the surface that the mesh stands for, by sphere tracing from just before it;
-// keeps the mesh's answer where the ray only grazes the surface.
-double refined(const SignedDistance& distance, const Ray& ray, double hit) {
-  constexpr double kBackOff = 0.01, kExact = 1e-9;
-  constexpr int kSteps = 64;
-  const double length = ray.direction.norm();
-  double depth = hit - kBackOff / length;
-  for (int i = 0; i < kSteps; ++i) {
-    const double step = distance(ray.at(depth)) / length;
-    depth += step;
-    if (std::abs(step) < kExact) return depth;
-    if (depth > hit + kBackOff / length) break;
+// Root of f between `outside` (f > 0) and `inside` (f < 0), by the Illinois variant of false position.
+template <class F>
+double rootBetween(const F& f, double outside, double inside) {
+  constexpr double kExact = 1e-9;
+  constexpr int kSteps = 40;
+  double f_outside = f(outside), f_inside = f(inside);
+  int last_side = 0;
+  double root = inside;
+  for (int i = 0; i < kSteps && std::abs(inside - outside) > kExact; ++i) {
+    root = (outside * f_inside - inside * f_outside) / (f_inside - f_outside);
+    const double value = f(root);
+    if (std::abs(value) < kExact) break;
+    const int side = value > 0 ? 1 : -1;
+    (side > 0 ? outside : inside) = root;
+    (side > 0 ? f_outside : f_inside) = value;
+    if (side == last_side) (side > 0 ? f_inside : f_outside) *= 0.5;
+    last_side = side;
   }
-  return hit;
+  return root;
+}
+
+// Moves a hit on the mesh onto the surface that the mesh stands for; keeps the mesh's answer where the ray finds no
+// change of sign close by, because it only grazes the surface.
+double refined(const SignedDistance& distance, const Ray& ray, double hit) {
+  const double reach = 0.01 / ray.direction.norm();
+  const auto f = [&](double depth) { return distance(ray.at(depth)); };
+  const double at_hit = f(hit);
+  if (at_hit > 0) return f(hit + reach) < 0 ? rootBetween(f, hit, hit + reach) : hit;
+  return f(hit - reach) > 0 ? rootBetween(f, hit - reach, hit) : hit;
 }
 
 // Depth at which a ray that starts inside leaves the sphere of the background.
