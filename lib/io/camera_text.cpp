@@ -9,6 +9,8 @@
 namespace vdbfuse {
 namespace {
 
+constexpr double kLastRowTolerance = 1e-6;
+
 // As many decimals as are needed to tell it from the expected number, not more.
 std::string shortText(double value) {
   std::ostringstream text;
@@ -26,7 +28,6 @@ std::string rowText(const Eigen::RowVectorXd& row) {
 
 RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::string& place,
                               const Eigen::MatrixXd& matrix) {
-  constexpr double kLastRowTolerance = 1e-6;
   Eigen::Matrix4d pose = Eigen::Matrix4d::Identity();
   pose.topRows(matrix.rows()) = matrix;
   const Eigen::RowVector4d last(0, 0, 0, 1);
@@ -34,22 +35,26 @@ RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::stri
     throw IoError(path, place, "a pose whose last row is 0 0 0 1", rowText(pose.row(3)));
   const Eigen::Matrix3d rotation = pose.topLeftCorner<3, 3>();
   if (rotation.determinant() <= 0)
-    throw IoError(path, place, "a rotation", "a matrix with determinant " + shortText(rotation.determinant()));
+    throw IoError(path, place, "a rotation",
+                  "a matrix with determinant " + shortText(rotation.determinant()));
   if (rotationError(rotation) > kRotationTolerance)
-    throw IoError(path, place, "a rotation", "a matrix R with |RᵀR - 1| = " + shortText(rotationError(rotation)));
+    throw IoError(path, place, "a rotation",
+                  "a matrix R with |RᵀR - 1| = " + shortText(rotationError(rotation)));
   return rigidFromMatrix(pose);
 }
 
-Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place, const Eigen::MatrixXd& matrix,
-                          int width, int height) {
-  if (matrix(0, 1) != 0 || matrix(1, 0) != 0) {
+Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place,
+                          const Eigen::MatrixXd& matrix, int width, int height) {
+  const double tolerance = 1e-6 * std::abs(matrix(0, 0));
+  if (!(std::abs(matrix(0, 1)) <= tolerance && std::abs(matrix(1, 0)) <= tolerance)) {
     throw IoError(path, place, "intrinsics without skew",
                   shortText(matrix(0, 1)) + " and " + shortText(matrix(1, 0)) + " beside the focal lengths");
   }
-  if (matrix.row(2) != Eigen::RowVector3d(0, 0, 1))
+  if ((matrix.row(2) - Eigen::RowVector3d(0, 0, 1)).cwiseAbs().maxCoeff() > kLastRowTolerance)
     throw IoError(path, place, "intrinsics whose last row is 0 0 1", rowText(matrix.row(2)));
   if (!(matrix(0, 0) > 0 && matrix(1, 1) > 0)) {
-    throw IoError(path, place, "focal lengths above 0", shortText(matrix(0, 0)) + " and " + shortText(matrix(1, 1)));
+    throw IoError(path, place, "focal lengths above 0",
+                  shortText(matrix(0, 0)) + " and " + shortText(matrix(1, 1)));
   }
   Pinhole camera;
   camera.width = width, camera.height = height;

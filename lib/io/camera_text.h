@@ -17,7 +17,7 @@ RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::stri
 
 /// The camera of a 3×3 matrix (fx 0 cx; 0 fy cy; 0 0 1) for images of the given size. Throws IoError when the
 /// matrix is of another form.
-Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place, const Eigen::MatrixXd& matrix,
-                          int width, int height);
+Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place,
+                          const Eigen::MatrixXd& matrix, int width, int height);
 
 }  // namespace vdbfuse

@@ -87,16 +87,19 @@ Layout readLayout(const std::filesystem::path& path) {
   const std::vector<unsigned char> start = readFileBytes(path, kMaxHeaderBytes);
   const Layout layout = parseHeader(path, {reinterpret_cast<const char*>(start.data()), start.size()});
   const auto [width, height] = layout.header;
-  const std::uint64_t promised =
-      layout.first_byte + std::uint64_t{4} * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  const std::uint64_t promised = layout.first_byte + std::uint64_t{4} * static_cast<std::uint64_t>(width) *
+                                                         static_cast<std::uint64_t>(height);
   if (size < promised) {
     throw IoError(path, "byte " + std::to_string(size),
-                  std::to_string(promised) + " bytes for " + sizeText(width, height) + " pixels", "the end of the file");
+                  std::to_string(promised) + " bytes for " + sizeText(width, height) + " pixels",
+                  "the end of the file");
   }
   return layout;
 }
 
-float swapped(float value) { return std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value))); }
+float swapped(float value) {
+  return std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+}
 
 }  // namespace
 
@@ -110,7 +113,8 @@ Image<float> readPfm(const std::filesystem::path& path) {
   if (bytes.size() < layout.first_byte + row_bytes * static_cast<std::size_t>(image.height()))
     throw IoError(path, "changed while it was read");
   const unsigned char* source = bytes.data() + layout.first_byte;
-  for (int y = image.height() - 1; y >= 0; --y, source += row_bytes) std::memcpy(image.row(y), source, row_bytes);
+  for (int y = image.height() - 1; y >= 0; --y, source += row_bytes)
+    std::memcpy(image.row(y), source, row_bytes);
   if (layout.order != std::endian::native) {
     for (float& value : image) value = swapped(value);
   }

@@ -29,7 +29,8 @@ PngHeader headerOf(const spng_ihdr& ihdr) {
 }
 
 std::string kindText(const spng_ihdr& ihdr) {
-  static constexpr const char* kNames[] = {"grey", "", "RGB", "palette", "grey and alpha", "", "RGB and alpha"};
+  static constexpr const char* kNames[] = {"grey",           "", "RGB",          "palette",
+                                           "grey and alpha", "", "RGB and alpha"};
   return std::to_string(ihdr.bit_depth) + "-bit " + kNames[ihdr.color_type];
 }
 
@@ -65,8 +66,8 @@ class Decoder {
 
   [[noreturn]] void truncated() const {
     const std::string promised = ihdr_.width == 0 ? "a header"
-                                                  : "pixels of a " + sizeText(ihdr_.width, ihdr_.height) + " " +
-                                                        kindText(ihdr_) + " image";
+                                                  : "pixels of a " + sizeText(ihdr_.width, ihdr_.height) +
+                                                        " " + kindText(ihdr_) + " image";
     throw IoError(path_, "byte " + std::to_string(bytes_.size()), promised, "the end of the file");
   }
 
@@ -87,7 +88,8 @@ Image<T> decodeImage(Decoder& decoder, int format) {
 }
 
 template <class T>
-void encode(const std::filesystem::path& path, const Image<T>& image, std::uint8_t bits, std::uint8_t color_type) {
+void encode(const std::filesystem::path& path, const Image<T>& image, std::uint8_t bits,
+            std::uint8_t color_type) {
   if (image.empty()) throw InvalidArgument("image", "an empty image cannot be written as PNG");
   const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
   spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1);
@@ -110,7 +112,9 @@ void encode(const std::filesystem::path& path, const Image<T>& image, std::uint8
 
 }  // namespace
 
-PngHeader readPngHeader(const std::filesystem::path& path) { return headerOf(Decoder(path, kHeaderBytes).ihdr()); }
+PngHeader readPngHeader(const std::filesystem::path& path) {
+  return headerOf(Decoder(path, kHeaderBytes).ihdr());
+}
 
 Image<Rgb8> readPngRgb(const std::filesystem::path& path) {
   Decoder decoder(path, SIZE_MAX);

@@ -49,15 +49,16 @@ std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextL
   return numbers;
 }
 
-Eigen::MatrixXd readMatrix(const std::filesystem::path& path, std::span<const TextLine> lines, std::size_t first,
-                           int rows, int columns, const std::string& what) {
+Eigen::MatrixXd readMatrix(const std::filesystem::path& path, std::span<const TextLine> lines,
+                           std::size_t first, int rows, int columns, const std::string& what) {
   Eigen::MatrixXd matrix(rows, columns);
   for (int row = 0; row < rows; ++row) {
     const std::size_t index = first + static_cast<std::size_t>(row);
     if (index >= lines.size()) throw IoError(path, linePlace(lines, index), what, "the end of the file");
     const std::vector<double> numbers = finiteNumbers(path, lines[index]);
     if (numbers.size() != static_cast<std::size_t>(columns))
-      throw IoError(path, linePlace(lines, index), what, std::to_string(numbers.size()) + " numbers in a row");
+      throw IoError(path, linePlace(lines, index), what,
+                    std::to_string(numbers.size()) + " numbers in a row");
     matrix.row(row) = Eigen::Map<const Eigen::RowVectorXd>(numbers.data(), columns);
   }
   return matrix;

@@ -25,9 +25,9 @@ std::string linePlace(std::span<const TextLine> lines, std::size_t index);
 /// The line's words as numbers. Throws IoError when one is no finite number.
 std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextLine& line);
 
-/// Rows [first, first + rows) of `lines` as a matrix. `what` names it in errors, e.g. "a 3x3 matrix of intrinsics".
-/// Throws IoError when lines are missing, or hold more or fewer than `columns` numbers.
-Eigen::MatrixXd readMatrix(const std::filesystem::path& path, std::span<const TextLine> lines, std::size_t first,
-                           int rows, int columns, const std::string& what);
+/// Rows [first, first + rows) of `lines` as a matrix. `what` names it in errors, e.g. "a 3x3 matrix of
+/// intrinsics". Throws IoError when lines are missing, or hold more or fewer than `columns` numbers.
+Eigen::MatrixXd readMatrix(const std::filesystem::path& path, std::span<const TextLine> lines,
+                           std::size_t first, int rows, int columns, const std::string& what);
 
 }  // namespace vdbfuse

@@ -66,7 +66,8 @@ T load(const std::byte* address) {
 }
 
 float storedValue(const std::byte* row, int x, DepthBuffer::Type type) {
-  if (type == DepthBuffer::Type::Float32) return load<float>(row + sizeof(float) * static_cast<std::size_t>(x));
+  if (type == DepthBuffer::Type::Float32)
+    return load<float>(row + sizeof(float) * static_cast<std::size_t>(x));
   const auto value = load<std::uint16_t>(row + sizeof(std::uint16_t) * static_cast<std::size_t>(x));
   return value == std::numeric_limits<std::uint16_t>::max() ? kInvalidDepth : static_cast<float>(value);
 }
@@ -96,7 +97,8 @@ Image<float> toSensorDepth(Image<float> stored, const Projection& projection, co
 DepthMap importDepth(const DepthBuffer& buffer, const Projection& projection) {
   if (buffer.data == nullptr) throw InvalidArgument("data", "expected an address, found none");
   checkSize("buffer", buffer.width, buffer.height, projection);
-  const std::size_t pixel_bytes = buffer.type == DepthBuffer::Type::Float32 ? sizeof(float) : sizeof(std::uint16_t);
+  const std::size_t pixel_bytes =
+      buffer.type == DepthBuffer::Type::Float32 ? sizeof(float) : sizeof(std::uint16_t);
   const auto row_bytes = static_cast<std::ptrdiff_t>(pixel_bytes) * buffer.width;
   const std::ptrdiff_t stride = buffer.row_stride == 0 ? row_bytes : buffer.row_stride;
   if (std::abs(stride) < row_bytes) {

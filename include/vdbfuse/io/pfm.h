@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grey PFM (portable float map): "Pf", width and height, a number whose sign tells the byte order (negative: least
-// significant byte first), then 32-bit floats, the bottom row first.
+// Grey PFM (portable float map): "Pf", width and height, a number whose sign tells the byte order (negative:
+// least significant byte first), then 32-bit floats, the bottom row first.
 #pragma once
 
 #include <filesystem>

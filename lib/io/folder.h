@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies in a folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vdbfuse {
+
+/// Names of the regular files directly in `folder` that end with `suffix` and are longer than it, hidden
+/// files left out, sorted byte by byte; empty when the folder does not exist. Throws IoError when it cannot
+/// be read.
+std::vector<std::string> filesEndingWith(const std::filesystem::path& folder, std::string_view suffix);
+
+/// The first of `folder`/`stem` + one of .png, .jpg, .jpeg that exists; empty when none does.
+std::filesystem::path findPicture(const std::filesystem::path& folder, const std::string& stem);
+
+/// "1 depth map", "3 depth maps": for messages.
+std::string counted(std::size_t count, const std::string& noun);
+
+}  // namespace vdbfuse
