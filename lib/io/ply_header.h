@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vdbfuse::io {
+
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+
+/// Bytes of one value in a binary file.
+std::size_t sizeOf(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  PlyType type;                       ///< of the value, or of the values of a list
+  std::optional<PlyType> count_type;  ///< of the length of a list; none for a single value
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
+  std::vector<PlyElement> elements;
+  std::size_t data_begin = 0;  ///< byte after the header
+};
+
+/// Reads the header only; `count`s are what the file says and checked by nobody yet. Throws IoError with the
+/// line.
+PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace vdbfuse::io
