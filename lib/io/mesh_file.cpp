@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string>
 
-#include "file_bytes.h"
+#include "mesh_bytes.h"
 #include "mesh_formats.h"
 #include "vdbfuse/base/errors.h"
 
