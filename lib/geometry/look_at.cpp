@@ -24,4 +24,9 @@ RigidTransform lookAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
   return world_from_camera;
 }
 
+Eigen::Vector3d frontFor(const Eigen::Vector3d& up) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  return turn * -Eigen::Vector3d::UnitY();
+}
+
 }  // namespace vdbfuse

@@ -13,6 +13,7 @@ namespace vdbfuse::tool {
 using Action = std::function<void()>;
 
 void addFuse(CLI::App& app, Action& action);
+void addRender(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 
 }  // namespace vdbfuse::tool

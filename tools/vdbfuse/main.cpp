@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   vdbfuse::tool::Action action;
   vdbfuse::tool::addFuse(app, action);
+  vdbfuse::tool::addRender(app, action);
   vdbfuse::tool::addSynth(app, action);
   try {
     app.parse(argc, argv);

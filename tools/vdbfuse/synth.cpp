@@ -7,10 +7,12 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "arguments.h"
 #include "commands.h"
 #include "output_folder.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/geometry/look_at.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/io/png.h"
@@ -35,10 +37,6 @@ const std::map<std::string, ConfidenceKind> kConfidences = {{"informative", Conf
                                                             {"none", ConfidenceKind::None}};
 const std::map<std::string, Background> kBackgrounds = {{"none", Background::None},
                                                         {"wall", Background::Wall}};
-const std::map<std::string, Eigen::Vector3d> kUps = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},
-                                                     {"z", {0, 0, 1}},   {"-x", {-1, 0, 0}},
-                                                     {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
-
 struct Request {
   std::string scene;
   fs::path folder;
@@ -55,28 +53,13 @@ std::string nameOf(const std::map<std::string, T>& names, const T& value) {
   return std::find_if(names.begin(), names.end(), [&](const auto& n) { return n.second == value; })->first;
 }
 
-void parseSize(const std::string& text, SynthOptions& options) {
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &options.width, &options.height, &rest) != 2)
-    throw InvalidArgument("--size", "expected WIDTHxHEIGHT, found '" + text + "'");
-}
-
 SynthOptions resolved(const Request& request) {
   SynthOptions options = request.hard ? hardened(request.options) : request.options;
-  parseSize(request.size, options);
+  std::tie(options.width, options.height) = parseSize(request.size);
   if (request.outliers) options.outliers = *request.outliers;
   if (request.confidence) options.confidence = *request.confidence;
-  std::string problems;
-  for (const std::string& p : validate(options)) problems += (problems.empty() ? "" : "; ") + p;
-  if (!problems.empty()) throw InvalidArgument("synth", problems);
+  refuse("synth", validate(options));
   return options;
-}
-
-// +z up and −y in front, or what becomes of them when another axis is up.
-void orient(Scene& scene, const Eigen::Vector3d& up) {
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
-  scene.up = turn * scene.up;
-  scene.front = turn * scene.front;
 }
 
 Scene loadScene(const Request& request) {
@@ -87,7 +70,8 @@ Scene loadScene(const Request& request) {
                           "'" + request.scene + "' is neither sphere, box, torus, figure nor a mesh file");
   Scene scene = known ? makeScene(request.scene)
                       : sceneFromMesh(fs::path(request.scene).stem().string(), readMesh(request.scene));
-  orient(scene, kUps.at(request.up));
+  scene.up = axisNamed(request.up);
+  scene.front = frontFor(scene.up);
   return scene;
 }
 
@@ -187,7 +171,7 @@ ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, con
 
 void run(const Request& request) {
   const ThreadLimit limit(request.threads);
-  const SynthOptions options = resolved(request);
+  const SynthOptions& options = request.options;
   OutputFolder output(request.folder, request.overwrite ? Existing::Replace : Existing::Refuse);
   const SyntheticScan scan(loadScene(request), options);
   const ScanStatistics sum = writeViews(scan, output.temporaryPath(), request);
@@ -200,23 +184,27 @@ void run(const Request& request) {
               100 * share(sum.object_wrong, sum.object_measured));
 }
 
-template <class T>
-CLI::Option* addChoice(CLI::App& app, const std::string& name, T& target, const auto& names,
-                       const std::string& help) {
-  return app.add_option(name, target, help)->transform(CLI::CheckedTransformer(names).description(""));
-}
-
 std::string choices(const auto& names) {
   std::string all;
   for (const auto& entry : names) all += (all.empty() ? "" : "|") + entry.first;
   return all;
 }
 
+// An option whose value is one of the names.
+CLI::Option* addChoice(CLI::App& app, const std::string& name, auto& target, const auto& names,
+                       const std::string& help) {
+  const auto choose = [&target, &names](const std::string& text) {
+    const auto found = names.find(text);
+    if (found == names.end())
+      throw CLI::ValidationError("expected " + choices(names) + ", found '" + text + "'");
+    target = found->second;
+  };
+  return app.add_option_function<std::string>(name, choose, help)->type_name(choices(names));
+}
+
 void addSensorOptions(CLI::App& app, Request& request) {
   SynthOptions& o = request.options;
-  addChoice(app, "--noise-law", o.noise_law, kNoiseLaws, "how noise grows with depth")
-      ->type_name(choices(kNoiseLaws))
-      ->default_str("stereo");
+  addChoice(app, "--noise-law", o.noise_law, kNoiseLaws, "how noise grows with depth")->default_str("stereo");
   auto* scale =
       app.add_option("--noise-scale", o.noise_scale, "standard deviation of the noise at depth 1, 0: exact")
           ->capture_default_str();
@@ -228,10 +216,8 @@ void addSensorOptions(CLI::App& app, Request& request) {
                "mixed silhouettes, whole patches at a wrong depth, overlapping confidences, outliers");
   app.add_option("--missing", o.missing, "share of pixels without a depth")->capture_default_str();
   addChoice(app, "--confidence", request.confidence, kConfidences,
-            "what confidences know of wrong pixels (informative; overlapping with --hard)")
-      ->type_name(choices(kConfidences));
+            "what confidences know of wrong pixels (informative; overlapping with --hard)");
   addChoice(app, "--background", o.background, kBackgrounds, "what lies behind the object")
-      ->type_name(choices(kBackgrounds))
       ->default_str("none");
 }
 
@@ -248,14 +234,12 @@ void addSynth(CLI::App& app, Action& action) {
   command->add_option("outdir", request->folder, "folder to write")->required();
   SynthOptions& o = request->options;
   command->add_option("--views", o.views, "number of cameras")->capture_default_str();
-  addChoice(*command, "--arc", o.arc, kArcs, "where they stand")
-      ->type_name(choices(kArcs))
-      ->default_str("full");
+  addChoice(*command, "--arc", o.arc, kArcs, "where they stand")->default_str("full");
   command->add_option("--size", request->size, "of each depth map, pixels")
       ->type_name("WxH")
       ->capture_default_str();
   command->add_option("--up", request->up, "axis of the scene that points up")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->check(axisCheck())
       ->capture_default_str();
   addSensorOptions(*command, *request);
   command->add_option("--seed", o.seed, "of the random numbers")->capture_default_str();
@@ -264,7 +248,10 @@ void addSynth(CLI::App& app, Action& action) {
   command->add_option("--threads", request->threads, "0: all processors")->capture_default_str();
   command->add_flag("--overwrite", request->overwrite, "replace a folder that is not empty");
   command->add_flag("--quiet", request->quiet, "print nothing");
-  command->callback([request, &action] { action = [request] { run(*request); }; });
+  command->callback([request, &action] {
+    request->options = resolved(*request);
+    action = [request] { run(*request); };
+  });
 }
 
 }  // namespace vdbfuse::tool
