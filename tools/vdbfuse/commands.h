@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every subcommand is one file with one function that declares its options and, when its subcommand is chosen, sets
-// the action. What runs prints results to stdout and words to stderr, and throws vdbfuse::Error when it fails (exit
-// code 1).
+// Every subcommand is one file with one function that declares its options and, when its subcommand is
+// chosen, sets the action. What runs prints results to stdout and words to stderr, and throws vdbfuse::Error
+// when it fails (exit code 1).
 #pragma once
 
 #include <CLI/App.hpp>
@@ -11,5 +11,7 @@ namespace vdbfuse::tool {
 
 /// Set by the subcommand that was chosen; main() runs it after all options have been parsed.
 using Action = std::function<void()>;
+
+void addEvaluate(CLI::App& app, Action& action);
 
 }  // namespace vdbfuse::tool
