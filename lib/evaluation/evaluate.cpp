@@ -19,10 +19,9 @@ namespace {
 constexpr std::size_t kGrain = 1024;
 
 // From seeded samples of one surface to the other.
-std::vector<double> distances(const TriangleMesh& from, const TriangleMesh& to,
+std::vector<double> distances(const TriangleMesh& from, const ClosestPoint& closest,
                               const EvaluateOptions& options) {
   const std::vector<SurfaceSample> samples = sampleSurface(from, options.samples, options.seed);
-  const ClosestPoint closest(to);
   std::vector<double> result(samples.size());
   parallelFor(samples.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) result[i] = closest.query(samples[i].point).distance;
@@ -108,23 +107,26 @@ std::vector<std::string> validate(const EvaluateOptions& options) {
 Evaluation evaluate(const TriangleMesh& mesh, const TriangleMesh& truth, const EvaluateOptions& options,
                     const std::vector<Region>& regions) {
   requireValid(options);
-  topology(truth);  // refuses indices out of range
+  const TopologyReport truth_topology = topology(truth);
   Evaluation result{};
   result.topology = topology(mesh);
 
-  const std::vector<double> truth_to_mesh = distances(truth, mesh, options);
+  const ClosestPoint mesh_surface(mesh), truth_surface(truth);
+  const std::vector<double> truth_to_mesh = distances(truth, mesh_surface, options);
   if (truth_to_mesh.empty()) throw InvalidArgument("truth", "has no triangle with an area");
-  const std::vector<double> mesh_to_truth = distances(mesh, truth, options);
+  const std::vector<double> mesh_to_truth = distances(mesh, truth_surface, options);
+  const Box mesh_box = finiteBox(mesh), truth_box = finiteBox(truth);
   std::vector<double> taus = options.taus;
-  if (taus.empty()) taus.push_back(0.01 * finiteBox(truth).diagonal().norm());
+  if (taus.empty()) taus.push_back(0.01 * truth_box.diagonal().norm());
   for (const double tau : taus) result.scores.push_back(scoreAt(tau, mesh_to_truth, truth_to_mesh));
   result.accuracy90 = quantile90(mesh_to_truth);
   result.accuracy_rms = rootMeanSquare(mesh_to_truth);
   result.completeness = result.scores.front().recall;
 
   const WindingNumber mesh_inside(mesh), truth_inside(truth);
-  const OverlapGrid grid{finiteBox(truth), finiteBox(mesh), options.iou_resolution, options.seed};
-  result.iou = intersectionOverUnion(mesh_inside, truth_inside, grid);
+  const Solid solid_mesh{mesh_inside, mesh_surface, mesh_box, isClosedManifold(result.topology)};
+  const Solid solid_truth{truth_inside, truth_surface, truth_box, isClosedManifold(truth_topology)};
+  result.iou = intersectionOverUnion(solid_mesh, solid_truth, {options.iou_resolution, options.seed});
   for (const Region& region : regions) {
     result.regions.push_back(shareOf(region, mesh_inside, truth_inside, options));
   }

@@ -5,13 +5,20 @@
 #include <optional>
 
 #include "vdbfuse/geometry/box.h"
+#include "vdbfuse/mesh/closest_point.h"
 #include "vdbfuse/mesh/winding_number.h"
 
 namespace vdbfuse {
 
-struct OverlapGrid {
-  Box truth_box;
-  Box mesh_box;    ///< may be empty
+/// One of the two meshes, with what answers questions about it.
+struct Solid {
+  const WindingNumber& winding;
+  const ClosestPoint& surface;
+  Box box;      ///< of its finite triangles; may be empty
+  bool closed;  ///< a closed manifold, whose winding number changes at its surface only
+};
+
+struct OverlapOptions {
   int resolution;  ///< cells along the longest side of a box
   std::uint64_t seed;
 };
@@ -20,8 +27,9 @@ struct OverlapGrid {
 Box finiteBox(const TriangleMesh& mesh);
 
 /// By one random point in each cell of a grid over the truth's box, and of a second grid over both boxes for
-/// what lies outside of the truth's: wild triangles far away do not make the first grid coarse.
-std::optional<double> intersectionOverUnion(const WindingNumber& mesh, const WindingNumber& truth,
-                                            const OverlapGrid& grid);
+/// what lies outside of the truth's: wild triangles far away do not make the first grid coarse. Blocks of
+/// cells away from a surface are decided by their centre.
+std::optional<double> intersectionOverUnion(const Solid& mesh, const Solid& truth,
+                                            const OverlapOptions& options);
 
 }  // namespace vdbfuse

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "commands.h"
 #include "vdbfuse/base/errors.h"
@@ -69,12 +70,11 @@ ordered_json toJson(const Arguments& arguments, const Evaluation& e) {
   return object;
 }
 
-void writeJson(const std::string& path, const ordered_json& object) {
-  AtomicFile target(path);
+void writeJson(AtomicFile& target, const ordered_json& object) {
   std::ofstream file(target.temporaryPath());
   file << object.dump(2) << '\n';
   file.close();
-  if (!file) throw IoError(path, "cannot be written");
+  if (!file) throw IoError(target.temporaryPath(), "cannot be written");
   target.commit();
 }
 
@@ -103,13 +103,16 @@ void print(const Evaluation& e) {
 
 void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
+  // Before the work, so that a place that cannot be written to is known at once.
+  std::optional<AtomicFile> json;
+  if (!arguments.json.empty()) json.emplace(arguments.json);
   const std::vector<Region> regions =
       arguments.regions.empty() ? std::vector<Region>{} : readRegions(arguments.regions);
   const TriangleMesh truth = readMesh(arguments.truth), mesh = readMesh(arguments.mesh);
   if (truth.triangles.empty()) throw IoError(arguments.truth, "", "a mesh with triangles", "none");
   const Evaluation evaluation = evaluate(mesh, truth, arguments.options, regions);
   print(evaluation);
-  if (!arguments.json.empty()) writeJson(arguments.json, toJson(arguments, evaluation));
+  if (json) writeJson(*json, toJson(arguments, evaluation));
 }
 
 }  // namespace
