@@ -82,6 +82,10 @@ RegionShare shareOf(const Region& region, const WindingNumber& mesh, const Windi
   return share;
 }
 
+// The winding number of a closed mesh jumps at its surface, so that a rough one is enough; that of an open
+// mesh goes through one half gently.
+WindingNumberOptions accuracyFor(bool closed) { return {.accuracy = closed ? 2.0 : 4.0}; }
+
 void requireValid(const EvaluateOptions& options) {
   std::string all;
   for (const std::string& problem : validate(options)) all += (all.empty() ? "" : "; ") + problem;
@@ -123,9 +127,11 @@ Evaluation evaluate(const TriangleMesh& mesh, const TriangleMesh& truth, const E
   result.accuracy_rms = rootMeanSquare(mesh_to_truth);
   result.completeness = result.scores.front().recall;
 
-  const WindingNumber mesh_inside(mesh), truth_inside(truth);
-  const Solid solid_mesh{mesh_inside, mesh_surface, mesh_box, isClosedManifold(result.topology)};
-  const Solid solid_truth{truth_inside, truth_surface, truth_box, isClosedManifold(truth_topology)};
+  const bool mesh_closed = isClosedManifold(result.topology), truth_closed = isClosedManifold(truth_topology);
+  const WindingNumber mesh_inside(mesh, accuracyFor(mesh_closed)),
+      truth_inside(truth, accuracyFor(truth_closed));
+  const Solid solid_mesh{mesh_inside, mesh_surface, mesh_box, mesh_closed};
+  const Solid solid_truth{truth_inside, truth_surface, truth_box, truth_closed};
   result.iou = intersectionOverUnion(solid_mesh, solid_truth, {options.iou_resolution, options.seed});
   for (const Region& region : regions) {
     result.regions.push_back(shareOf(region, mesh_inside, truth_inside, options));
