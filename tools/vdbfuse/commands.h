@@ -15,5 +15,6 @@ using Action = std::function<void()>;
 void addFuse(CLI::App& app, Action& action);
 void addRender(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
+void addEvaluate(CLI::App& app, Action& action);
 
 }  // namespace vdbfuse::tool

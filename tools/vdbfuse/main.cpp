@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   vdbfuse::tool::addFuse(app, action);
   vdbfuse::tool::addRender(app, action);
   vdbfuse::tool::addSynth(app, action);
+  vdbfuse::tool::addEvaluate(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
