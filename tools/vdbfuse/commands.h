@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every subcommand is one file with one function that declares its options and, when its subcommand is chosen, sets
-// the action. What runs prints results to stdout and words to stderr, and throws vdbfuse::Error when it fails (exit
-// code 1).
+// Every subcommand is one file with one function that declares its options and, when its subcommand is
+// chosen, sets the action. What runs prints results to stdout and words to stderr, and throws vdbfuse::Error
+// when it fails (exit code 1).
 #pragma once
 
 #include <CLI/App.hpp>
@@ -14,5 +14,8 @@ using Action = std::function<void()>;
 
 void addFormats(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);
+void addFuse(CLI::App& app, Action& action);
+void addRender(CLI::App& app, Action& action);
+void addSynth(CLI::App& app, Action& action);
 
 }  // namespace vdbfuse::tool

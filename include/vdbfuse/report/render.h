@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a mesh.
+#pragma once
+
+#include <vector>
+
+#include "vdbfuse/mesh/triangle_mesh.h"
+#include "vdbfuse/sensor/view.h"
+
+namespace vdbfuse {
+
+enum class MeshColoring {
+  Shaded,   ///< plain clay
+  Normal,   ///< direction of the normal in the camera: x, y, z as red, green, blue
+  Support,  ///< by mesh.support: orange where the surface was invented, then from dark to light with more
+            ///< views
+  Values,   ///< by RenderOptions::values, dark blue to yellow
+};
+
+struct RenderOptions {
+  MeshColoring coloring = MeshColoring::Shaded;
+  /// A vertex each, for MeshColoring::Values.
+  std::vector<float> values;
+  /// What the two ends of the colours stand for. For Support only `high` matters. Empty (low = high): the
+  /// smallest and largest value.
+  double low = 0, high = 0;
+  enum class Normals { Interpolated, Flat };
+  /// Flat shows every triangle as it is.
+  Normals normals = Normals::Interpolated;
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the world, towards the sky's light
+  Rgb8 background{255, 255, 255};
+  /// Rays a pixel along each axis.
+  int supersampling = 2;
+};
+
+/// Everything that is wrong with the options for this mesh, one sentence each.
+std::vector<std::string> validate(const RenderOptions& options, const TriangleMesh& mesh);
+
+/// What the sensor of `view` sees of the mesh, lit from the sensor and from the sky. Triangles seen from
+/// their inner side come out violet: the mesh is open there, or inside out. Same bytes for every number of
+/// threads. Throws InvalidArgument listing all of validate(options, mesh).
+Image<Rgb8> render(const TriangleMesh& mesh, const ViewHeader& view, const RenderOptions& options = {});
+
+/// A pinhole camera that shows all of `box` from the front, a little from its right and from above. REQUIRES:
+/// `box` not empty; `up` a unit vector; the front is frontFor(up).
+ViewHeader framingCamera(const Box& box, const Eigen::Vector3d& up, int width, int height);
+
+/// A camera with a field of view of 40° along the longer side of its image.
+ViewHeader cameraLookingAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
+                           const Eigen::Vector3d& up, int width, int height);
+
+}  // namespace vdbfuse

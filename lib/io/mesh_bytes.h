@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace vdbfuse::io {
+
+/// All bytes of a regular file. IoError when there is none or it cannot be read.
+std::string readFileBytes(const std::filesystem::path& path);
+
+/// Puts `bytes` in place of the file, complete or not at all. Throws IoError.
+void writeFileBytes(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace vdbfuse::io

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output_folder.h"
+
+#include <unistd.h>
+
+#include <system_error>
+
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse::tool {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void requireFree(const fs::path& target, Existing existing) {
+  if (!fs::exists(target)) return;
+  if (!fs::is_directory(target)) throw IoError(target, "", "a folder to write", "a file");
+  if (existing == Existing::Refuse && !fs::is_empty(target))
+    throw IoError(target, "", "an empty folder (or --overwrite)", "one that is not empty");
+}
+
+// "scan/" and "scan" name the same folder; the temporary must lie beside it, not in it.
+fs::path withoutTrailingSlash(const fs::path& path) {
+  const fs::path absolute = fs::absolute(path).lexically_normal();
+  return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(fs::path target, Existing existing) : target_(withoutTrailingSlash(target)) {
+  requireFree(target_, existing);
+  temporary_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(getpid()));
+  std::error_code error;
+  fs::create_directories(temporary_, error);
+  if (error) throw IoError(target, "cannot be created: " + error.message());
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+}
+
+void OutputFolder::commit() {
+  std::error_code error;
+  fs::remove_all(target_, error);
+  if (!error) fs::rename(temporary_, target_, error);
+  if (error) throw IoError(target_, "cannot be replaced: " + error.message());
+  temporary_.clear();
+}
+
+}  // namespace vdbfuse::tool
