@@ -2,8 +2,8 @@
 #include "io/camera_text.h"
 
 #include <cmath>
-#include <sstream>
 
+#include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -11,16 +11,9 @@ namespace {
 
 constexpr double kLastRowTolerance = 1e-6;
 
-// As many decimals as are needed to tell it from the expected number, not more.
-std::string shortText(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
 std::string rowText(const Eigen::RowVectorXd& row) {
   std::string text;
-  for (const double value : row) text += (text.empty() ? "" : " ") + shortText(value);
+  for (const double value : row) text += (text.empty() ? "" : " ") + numberText(value);
   return text;
 }
 
@@ -36,10 +29,10 @@ RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::stri
   const Eigen::Matrix3d rotation = pose.topLeftCorner<3, 3>();
   if (rotation.determinant() <= 0)
     throw IoError(path, place, "a rotation",
-                  "a matrix with determinant " + shortText(rotation.determinant()));
+                  "a matrix with determinant " + numberText(rotation.determinant()));
   if (rotationError(rotation) > kRotationTolerance)
     throw IoError(path, place, "a rotation",
-                  "a matrix R with |RᵀR - 1| = " + shortText(rotationError(rotation)));
+                  "a matrix R with |RᵀR - 1| = " + numberText(rotationError(rotation)));
   return rigidFromMatrix(pose);
 }
 
@@ -47,14 +40,15 @@ Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& 
                           const Eigen::MatrixXd& matrix, int width, int height) {
   const double tolerance = 1e-6 * std::abs(matrix(0, 0));
   if (!(std::abs(matrix(0, 1)) <= tolerance && std::abs(matrix(1, 0)) <= tolerance)) {
-    throw IoError(path, place, "intrinsics without skew",
-                  shortText(matrix(0, 1)) + " and " + shortText(matrix(1, 0)) + " beside the focal lengths");
+    throw IoError(
+        path, place, "intrinsics without skew",
+        numberText(matrix(0, 1)) + " and " + numberText(matrix(1, 0)) + " beside the focal lengths");
   }
   if ((matrix.row(2) - Eigen::RowVector3d(0, 0, 1)).cwiseAbs().maxCoeff() > kLastRowTolerance)
     throw IoError(path, place, "intrinsics whose last row is 0 0 1", rowText(matrix.row(2)));
   if (!(matrix(0, 0) > 0 && matrix(1, 1) > 0)) {
     throw IoError(path, place, "focal lengths above 0",
-                  shortText(matrix(0, 0)) + " and " + shortText(matrix(1, 1)));
+                  numberText(matrix(0, 0)) + " and " + numberText(matrix(1, 1)));
   }
   Pinhole camera;
   camera.width = width, camera.height = height;

@@ -1,32 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole files in memory, with the errors that every reader shares.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
-#include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
-namespace vdbfuse {
+namespace vdbfuse::io {
 
-/// The first `limit` bytes of a file, or all of it. Throws IoError when it is absent, a folder or unreadable.
-std::vector<unsigned char> readFileBytes(const std::filesystem::path& path,
-                                         std::size_t limit = std::numeric_limits<std::size_t>::max());
+/// All bytes of a regular file. IoError when there is none or it cannot be read.
+std::string readFileBytes(const std::filesystem::path& path);
 
-/// Size of a regular file. Throws IoError as readFileBytes() does.
-std::uint64_t fileBytes(const std::filesystem::path& path);
+/// The first `count` bytes, or all where there are fewer. IoError as above.
+std::string readFileStart(const std::filesystem::path& path, std::size_t count);
 
-/// Writes a file that is complete or absent. Throws IoError.
-void writeFileBytes(const std::filesystem::path& path, std::span<const unsigned char> bytes);
+/// Bytes in a regular file. IoError as above.
+std::uint64_t fileSize(const std::filesystem::path& path);
 
-/// Throws IoError unless 1 ≤ width·height ≤ 2^28: no header makes us take memory beyond reason.
-void checkImageSize(const std::filesystem::path& path, const std::string& place, std::int64_t width,
-                    std::int64_t height);
+/// Puts `bytes` in place of the file, complete or not at all. Throws IoError.
+void writeFileBytes(const std::filesystem::path& path, std::string_view bytes);
 
-/// "640x480".
-std::string sizeText(std::int64_t width, std::int64_t height);
-
-}  // namespace vdbfuse
+}  // namespace vdbfuse::io

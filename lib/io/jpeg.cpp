@@ -6,26 +6,26 @@
 #include <memory>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "io/file_bytes.h"
+#include "io/image_size.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
 
 Image<Rgb8> readJpeg(const std::filesystem::path& path) {
-  const std::vector<unsigned char> bytes = readFileBytes(path);
+  const std::string bytes = io::readFileBytes(path);
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   if (bytes.empty()) throw IoError(path, "", "a JPEG file", "an empty file");
   const std::unique_ptr<std::remove_pointer_t<tjhandle>, decltype(&tjDestroy)> decoder(tjInitDecompress(),
                                                                                        tjDestroy);
   int width = 0, height = 0, subsampling = 0, colorspace = 0;
-  if (tjDecompressHeader3(decoder.get(), bytes.data(), bytes.size(), &width, &height, &subsampling,
-                          &colorspace) != 0)
+  if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling, &colorspace) != 0)
     throw IoError(path, "", "a JPEG file", tjGetErrorStr2(decoder.get()));
   checkImageSize(path, "", width, height);
   Image<Rgb8> image(width, height);
-  const int failed = tjDecompress2(decoder.get(), bytes.data(), bytes.size(), image.data()->data(), width, 0,
-                                   height, TJPF_RGB, TJFLAG_ACCURATEDCT);
+  const int failed = tjDecompress2(decoder.get(), data, bytes.size(), image.data()->data(), width, 0, height,
+                                   TJPF_RGB, TJFLAG_ACCURATEDCT);
   if (failed == 0) return image;
   const std::string message = tjGetErrorStr2(decoder.get());
   // Warnings come back as failures too; all but a missing end leave a good picture.

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <memory>
 
-#include "io/file_bytes.h"
 #include "io/folder.h"
+#include "io/image_size.h"
 #include "io/mvsnet_camera.h"
 #include "io/stored_depth.h"
+#include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/pfm.h"
 #include "vdbfuse/io/png.h"
@@ -95,7 +96,7 @@ OpenedView openView(const std::filesystem::path& camera_path, const std::string&
   if (!fitted) {
     throw IoError(camera_path, camera.intrinsics_place,
                   "a principal point inside the " + sizeText(size.width, size.height) + " depth map",
-                  std::to_string(camera.pinhole.cx) + ", " + std::to_string(camera.pinhole.cy));
+                  numberText(camera.pinhole.cx) + ", " + numberText(camera.pinhole.cy));
   }
   return {{stem, fitted->pinhole, camera.world_from_camera}, fitted->scale};
 }

@@ -69,8 +69,7 @@ void MvsnetWriter::add(const View& view) {
     createFolder(folder_ / "images");
     writePng(folder_ / "images" / (stem + ".png"), view.map.color);
   }
-  writeFileBytes(folder_ / "cams" / (stem + "_cam.txt"),
-                 {reinterpret_cast<const unsigned char*>(text.data()), text.size()});
+  io::writeFileBytes(folder_ / "cams" / (stem + "_cam.txt"), text);
   ++count_;
 }
 

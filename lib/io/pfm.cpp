@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "io/file_bytes.h"
+#include "io/image_size.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -83,9 +83,8 @@ Layout parseHeader(const std::filesystem::path& path, std::string_view text) {
 }
 
 Layout readLayout(const std::filesystem::path& path) {
-  const std::uint64_t size = fileBytes(path);
-  const std::vector<unsigned char> start = readFileBytes(path, kMaxHeaderBytes);
-  const Layout layout = parseHeader(path, {reinterpret_cast<const char*>(start.data()), start.size()});
+  const std::uint64_t size = io::fileSize(path);
+  const Layout layout = parseHeader(path, io::readFileStart(path, kMaxHeaderBytes));
   const auto [width, height] = layout.header;
   const std::uint64_t promised = layout.first_byte + std::uint64_t{4} * static_cast<std::uint64_t>(width) *
                                                          static_cast<std::uint64_t>(height);
@@ -107,12 +106,12 @@ PfmHeader readPfmHeader(const std::filesystem::path& path) { return readLayout(p
 
 Image<float> readPfm(const std::filesystem::path& path) {
   const Layout layout = readLayout(path);
-  const std::vector<unsigned char> bytes = readFileBytes(path);
+  const std::string bytes = io::readFileBytes(path);
   Image<float> image(layout.header.width, layout.header.height);
   const std::size_t row_bytes = sizeof(float) * static_cast<std::size_t>(image.width());
   if (bytes.size() < layout.first_byte + row_bytes * static_cast<std::size_t>(image.height()))
     throw IoError(path, "changed while it was read");
-  const unsigned char* source = bytes.data() + layout.first_byte;
+  const char* source = bytes.data() + layout.first_byte;
   for (int y = image.height() - 1; y >= 0; --y, source += row_bytes)
     std::memcpy(image.row(y), source, row_bytes);
   if (layout.order != std::endian::native) {
@@ -124,16 +123,13 @@ Image<float> readPfm(const std::filesystem::path& path) {
 void writePfm(const std::filesystem::path& path, const Image<float>& image) {
   static_assert(std::endian::native == std::endian::little);
   if (image.empty()) throw InvalidArgument("image", "an empty image cannot be written as PFM");
-  const std::string header =
+  std::string bytes =
       "Pf\n" + std::to_string(image.width()) + " " + std::to_string(image.height()) + "\n-1.0\n";
   const std::size_t row_bytes = sizeof(float) * static_cast<std::size_t>(image.width());
-  std::vector<unsigned char> bytes(header.begin(), header.end());
   bytes.reserve(bytes.size() + row_bytes * static_cast<std::size_t>(image.height()));
-  for (int y = image.height() - 1; y >= 0; --y) {
-    const auto* row = reinterpret_cast<const unsigned char*>(image.row(y));
-    bytes.insert(bytes.end(), row, row + row_bytes);
-  }
-  writeFileBytes(path, bytes);
+  for (int y = image.height() - 1; y >= 0; --y)
+    bytes.append(reinterpret_cast<const char*>(image.row(y)), row_bytes);
+  io::writeFileBytes(path, bytes);
 }
 
 }  // namespace vdbfuse

@@ -3,13 +3,14 @@
 
 #include <spng.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <memory>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "io/file_bytes.h"
+#include "io/image_size.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -38,8 +39,8 @@ std::string kindText(const spng_ihdr& ihdr) {
 class Decoder {
  public:
   Decoder(const std::filesystem::path& path, std::size_t limit)
-      : path_(path), bytes_(readFileBytes(path, limit)), context_(spng_ctx_new(0), spng_ctx_free) {
-    if (bytes_.empty()) throw IoError(path_, "", "a PNG file", "an empty file");
+      : path_(path), bytes_(io::readFileStart(path, limit)), context_(spng_ctx_new(0), spng_ctx_free) {
+    checkSignature();
     spng_set_png_buffer(context_.get(), bytes_.data(), bytes_.size());
     check(spng_get_ihdr(context_.get(), &ihdr_));
     checkImageSize(path_, "", ihdr_.width, ihdr_.height);
@@ -49,6 +50,7 @@ class Decoder {
 
   void decode(void* pixels, std::size_t size, int format) {
     check(spng_decode_image(context_.get(), pixels, size, format, 0));
+    check(spng_decode_chunks(context_.get()));  // up to the end mark: a file cut behind its pixels is cut too
   }
 
   // Deflate cannot make more than 1032 bytes of one: a file this short need not cost us memory.
@@ -57,9 +59,16 @@ class Decoder {
   }
 
  private:
+  void checkSignature() const {
+    static constexpr std::array<char, 8> kSignature = {'\x89', 'P', 'N', 'G', '\r', '\n', '\x1a', '\n'};
+    if (bytes_.empty()) throw IoError(path_, "", "a PNG file", "an empty file");
+    const auto compared = static_cast<std::ptrdiff_t>(std::min(bytes_.size(), kSignature.size()));
+    if (!std::equal(bytes_.begin(), bytes_.begin() + compared, kSignature.begin()))
+      throw IoError(path_, "", "a PNG file", "another signature");
+  }
+
   void check(int code) const {
     if (code == SPNG_OK) return;
-    if (code == SPNG_ESIGNATURE) throw IoError(path_, "", "a PNG file", "another signature");
     if (code == SPNG_IO_EOF) truncated();
     throw IoError(path_, "", "a sound PNG file", spng_strerror(code));
   }
@@ -72,7 +81,7 @@ class Decoder {
   }
 
   const std::filesystem::path& path_;
-  std::vector<unsigned char> bytes_;
+  std::string bytes_;
   Context context_;
   spng_ihdr ihdr_{};
 };
@@ -107,7 +116,7 @@ void encode(const std::filesystem::path& path, const Image<T>& image, std::uint8
   const std::unique_ptr<void, decltype(&std::free)> bytes(
       code == SPNG_OK ? spng_get_png_buffer(context.get(), &size, &code) : nullptr, std::free);
   if (!bytes) throw IoError(path, std::string("cannot be encoded: ") + spng_strerror(code));
-  writeFileBytes(path, {static_cast<const unsigned char*>(bytes.get()), size});
+  io::writeFileBytes(path, {static_cast<const char*>(bytes.get()), size});
 }
 
 }  // namespace

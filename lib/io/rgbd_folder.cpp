@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "io/camera_text.h"
-#include "io/file_bytes.h"
 #include "io/folder.h"
+#include "io/image_size.h"
 #include "io/stored_depth.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"

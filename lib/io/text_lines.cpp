@@ -12,12 +12,11 @@ namespace vdbfuse {
 
 std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
   constexpr std::size_t kMaxBytes = 1 << 20;
-  const std::uint64_t size = fileBytes(path);
+  const std::uint64_t size = io::fileSize(path);
   if (size > kMaxBytes) {
     throw IoError(path, "", "a text file of at most 1048576 bytes", std::to_string(size) + " bytes");
   }
-  const std::vector<unsigned char> bytes = readFileBytes(path);
-  std::istringstream text(std::string(bytes.begin(), bytes.end()));
+  std::istringstream text(io::readFileBytes(path));
   std::vector<TextLine> lines;
   std::string content;
   for (int number = 1; std::getline(text, content); ++number) {
@@ -32,6 +31,12 @@ std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
 std::string linePlace(std::span<const TextLine> lines, std::size_t index) {
   if (index < lines.size()) return "line " + std::to_string(lines[index].number);
   return "line " + std::to_string(lines.empty() ? 1 : lines.back().number + 1);
+}
+
+std::string numberText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
 }
 
 std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextLine& line) {

@@ -22,6 +22,9 @@ std::vector<TextLine> readTextLines(const std::filesystem::path& path);
 /// "line N" of lines[index], or of the line after the last one.
 std::string linePlace(std::span<const TextLine> lines, std::size_t index);
 
+/// A number for a message: six digits at most, no trailing zeros.
+std::string numberText(double value);
+
 /// The line's words as numbers. Throws IoError when one is no finite number.
 std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextLine& line);
 

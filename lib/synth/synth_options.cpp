@@ -59,11 +59,11 @@ double noiseSigma(const SynthOptions& options, double z) {
   const double scale = noiseScale(options);
   const auto nguyen = [](double depth) { return 1.2 + 1.9 * (depth - 0.4) * (depth - 0.4); };
   switch (options.noise_law) {
-    case NoiseLaw::Stereo:
+    case SynthNoise::Stereo:
       return scale * z * z;
-    case NoiseLaw::StructuredLight:
+    case SynthNoise::StructuredLight:
       return scale * nguyen(z) / nguyen(1.0);
-    case NoiseLaw::Constant:
+    case SynthNoise::Constant:
       return scale;
   }
   return scale;

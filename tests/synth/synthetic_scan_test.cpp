@@ -86,7 +86,7 @@ TEST(SyntheticScan, AMeshSceneIsCastAsItIs) {
 }
 
 TEST(SyntheticScan, TheNoiseHasTheScaleAndTheLawThatWereAskedFor) {
-  for (const NoiseLaw law : {NoiseLaw::Stereo, NoiseLaw::StructuredLight, NoiseLaw::Constant}) {
+  for (const SynthNoise law : {SynthNoise::Stereo, SynthNoise::StructuredLight, SynthNoise::Constant}) {
     SynthOptions options = exact();
     options.noise_scale = 0.002, options.noise_law = law, options.width = 320, options.height = 240;
     const SyntheticView view = SyntheticScan(sphereScene(), options).render(0);
@@ -107,7 +107,7 @@ TEST(SyntheticScan, TheNoiseHasTheScaleAndTheLawThatWereAskedFor) {
 TEST(SyntheticScan, StereoNoiseGrowsWithTheSquareOfTheDepthAndStructuredLightAsMeasuredByNguyen) {
   SynthOptions options;
   EXPECT_DOUBLE_EQ(noiseSigma(options, 3), 9 * noiseSigma(options, 1));
-  options.noise_law = NoiseLaw::StructuredLight, options.noise_scale = 1.2 + 1.9 * 0.36;
+  options.noise_law = SynthNoise::StructuredLight, options.noise_scale = 1.2 + 1.9 * 0.36;
   EXPECT_NEAR(noiseSigma(options, 2.4), 1.2 + 1.9 * 4, 1e-12);
 }
 

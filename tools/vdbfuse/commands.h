@@ -12,6 +12,7 @@ namespace vdbfuse::tool {
 /// Set by the subcommand that was chosen; main() runs it after all options have been parsed.
 using Action = std::function<void()>;
 
+void addFuse(CLI::App& app, Action& action);
 void addRender(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 

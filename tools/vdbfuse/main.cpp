@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "vdbfuse " VDBFUSE_VERSION);
   app.require_subcommand(1);
   vdbfuse::tool::Action action;
+  vdbfuse::tool::addFuse(app, action);
   vdbfuse::tool::addRender(app, action);
   vdbfuse::tool::addSynth(app, action);
   try {

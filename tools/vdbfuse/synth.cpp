@@ -29,9 +29,9 @@ const std::map<std::string, Arc> kArcs = {{"full", Arc::Full},
                                           {"upper", Arc::Upper},
                                           {"front", Arc::Front},
                                           {"room", Arc::Room}};
-const std::map<std::string, NoiseLaw> kNoiseLaws = {{"stereo", NoiseLaw::Stereo},
-                                                    {"structured-light", NoiseLaw::StructuredLight},
-                                                    {"constant", NoiseLaw::Constant}};
+const std::map<std::string, SynthNoise> kNoiseLaws = {{"stereo", SynthNoise::Stereo},
+                                                      {"structured-light", SynthNoise::StructuredLight},
+                                                      {"constant", SynthNoise::Constant}};
 const std::map<std::string, ConfidenceKind> kConfidences = {{"informative", ConfidenceKind::Informative},
                                                             {"overlapping", ConfidenceKind::Overlapping},
                                                             {"none", ConfidenceKind::None}};

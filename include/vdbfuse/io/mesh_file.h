@@ -18,6 +18,9 @@ namespace vdbfuse {
 /// does not exist.
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
+/// IoError when writeMesh() would not know the extension: to be told before the work begins.
+void requireMeshFormat(const std::filesystem::path& path);
+
 /// Reads a mesh by extension:
 ///   .ply  ascii, binary of either byte order; faces of more than three vertices become fans; normals,
 ///   colours

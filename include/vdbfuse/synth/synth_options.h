@@ -19,7 +19,7 @@ enum class Arc {
 };
 
 /// How the standard deviation of a depth grows with the depth z; every law gives `noise_scale` at z = 1.
-enum class NoiseLaw {
+enum class SynthNoise {
   Stereo,           ///< ∝ z²
   StructuredLight,  ///< ∝ 1.2 + 1.9 (z − 0.4)² (Nguyen, Izadi, Lovell, 3DIMPVT 2012)
   Constant,
@@ -46,7 +46,7 @@ struct SynthOptions {
   int views = 48;
   Arc arc = Arc::Full;
   int width = 640, height = 480;  ///< pixels
-  NoiseLaw noise_law = NoiseLaw::Stereo;
+  SynthNoise noise_law = SynthNoise::Stereo;
   /// Standard deviation of the (Gaussian) noise at z = 1, in diagonals of the scene. 0: exact depths.
   double noise_scale = 0.001;
   /// When given, replaces noise_scale by noise_px/(focal length · baseline): a matching error in pixels.

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// σ(x): the evidence (log-odds) that x is visible, that is outside. σ > 0 outside, σ < 0 inside; never
+// clamped here.
+#pragma once
+
+#include <vector>
+
+#include "vdbfuse/base/progress.h"
+#include "vdbfuse/octree/octree.h"
+#include "vdbfuse/sensor/judged_view.h"
+
+namespace vdbfuse {
+
+/// How the views' testimony is combined.
+enum class EvidenceRule {
+  /// "x is outside": each sensor sees past x with probability v, independently; inside: none does. v is
+  /// integrated
+  /// out under Beta(a, 1):  e = b + log ∫ Beta(v; a, 1) Π_i (1 − v + v L_i)^w_i dv.
+  Outside,
+  /// The paper's equation (5): visible from at least one sensor, e = log((1 − Π π_i)/Π π_i).
+  Paper,
+  /// No self-occlusion (equations 10 and 11): v = 1, e = Σ w_i log L_i. With logistic noise and no outliers
+  /// this is the
+  /// Curless–Levoy sum.
+  NoSelfOcclusion,
+  /// Constant ballooning: e = −balloon everywhere. The baseline of the paper's Fig. 4.
+  Constant,
+};
+
+struct EvidenceOptions {
+  EvidenceRule rule = EvidenceRule::Outside;
+  /// a of the visibility's prior Beta(v; a, 1). Smaller: outside points may be seen by fewer sensors, so that
+  /// more denials are needed to call a point inside. Dimensionless.
+  double visibility_prior = 0.5;
+  /// A single v in place of the integral, in (0, 1]; 0: integrate.
+  double visibility = 0.0;
+  /// Upper bound of b, the prior log-odds of outside. Where n views report b(n) = min(prior, −½ log ∫ Beta
+  /// (1−v)ⁿ dv).
+  double prior = 0.75;
+  /// Inflation of constant ballooning, log-odds.
+  double balloon = 1.0;
+  /// At most so many views' no-returns count at a point.
+  int max_no_returns = 4;
+};
+
+std::vector<std::string> validate(const EvidenceOptions& options);
+
+/// log L = log p(D | sensor sees past x) / p(D | it does not), for a measurement D with noise scale s and
+/// outlier probability ε of a sensor with range [near, far], at depth d (section 4):
+///   A = [(1−ε)(F((far−D)/s) − F((d−D)/s)) + ε(1−t)]/(1−t),  B = [(1−ε)(F((d−D)/s) − F((near−D)/s)) + ε t]/t,
+///   t = (d − near)/(far − near), kept within [0.001, 0.999];  L = A/B.
+double logLikelihoodRatio(const SensorModel& sensor, double measured, double noise, double outlier,
+                          double depth);
+
+/// log L of a look that met nothing: L = (q + (1−q) m)/m with q = ½ and the miss rate m not below 0.2.
+double logNoReturnRatio(double miss_rate);
+
+/// Evidence at world points. One value a point.
+std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points,
+                              const EvidenceOptions& options);
+
+/// Evidence of each cell of an octree: at the centre of a finest cell, mean over 8 or 64 samples in a coarser
+/// one.
+std::vector<float> evidence(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
+                            const Progress& progress = {});
+
+}  // namespace vdbfuse

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "vdbfuse/geometry/image.h"
+
+namespace vdbfuse {
+
+/// Where a sensor looked past everything: invalid pixels that survive a 9×9 opening and are joined to the
+/// image's border. Isolated misses are chance, and a dark patch inside an object is missed by every view.
+Image<std::uint8_t> emptyRegions(const Image<float>& depth);
+
+/// Share of the image's border pixels that lie in `mask`.
+double borderShare(const Image<std::uint8_t>& mask);
+
+}  // namespace vdbfuse

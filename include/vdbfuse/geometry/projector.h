@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Projection of many world points into one view: the transform prepared once, the common pinhole inlined.
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "vdbfuse/geometry/distortion.h"
+#include "vdbfuse/geometry/projection.h"
+#include "vdbfuse/geometry/rigid_transform.h"
+
+namespace vdbfuse {
+
+/// The pixel that sees a world point.
+struct Sighting {
+  int x = 0, y = 0;  ///< nearest pixel, inside the image
+  double depth = 0;  ///< of the point, in the sensor's own measure
+};
+
+class Projector {
+ public:
+  Projector(const Projection& projection, const RigidTransform& world_from_camera)
+      : projection_(projection),
+        rotation_(world_from_camera.linear().transpose()),
+        translation_(-(rotation_ * world_from_camera.translation())),
+        width_(imageWidth(projection)),
+        height_(imageHeight(projection)) {
+    const Pinhole* pinhole = std::get_if<Pinhole>(&projection);
+    if (pinhole != nullptr && !isDistorted(*pinhole)) pinhole_ = *pinhole;
+  }
+
+  /// Nothing when the point lies behind the sensor or outside its image.
+  std::optional<Sighting> operator()(const Eigen::Vector3d& world) const {
+    const Eigen::Vector3d p = rotation_ * world + translation_;
+    if (!pinhole_) return general(p);
+    if (!(p.z() > 0)) return std::nullopt;
+    const double inverse = 1.0 / p.z();
+    return inside(pinhole_->fx * p.x() * inverse + pinhole_->cx,
+                  pinhole_->fy * p.y() * inverse + pinhole_->cy, p.z());
+  }
+
+ private:
+  std::optional<Sighting> general(const Eigen::Vector3d& p) const {
+    const std::optional<PixelDepth> seen = project(projection_, p);
+    if (!seen) return std::nullopt;
+    return inside(seen->x, seen->y, seen->depth);
+  }
+  std::optional<Sighting> inside(double x, double y, double depth) const {
+    if (!(x >= -0.5 && y >= -0.5 && x < width_ - 0.5 && y < height_ - 0.5)) return std::nullopt;
+    return Sighting{static_cast<int>(x + 0.5), static_cast<int>(y + 0.5), depth};
+  }
+
+  Projection projection_;
+  std::optional<Pinhole> pinhole_;
+  Eigen::Matrix3d rotation_;
+  Eigen::Vector3d translation_;
+  int width_, height_;
+};
+
+}  // namespace vdbfuse

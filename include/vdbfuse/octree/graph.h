@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The graph of an octree and its minimum cut: E[S] = ∫_S ρ dA + λ ∫_V(S) σ dV  (Hernández et al. 2007, eq.
+// 1), in which V(S) is the solid.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdbfuse/base/progress.h"
+#include "vdbfuse/octree/octree.h"
+
+namespace vdbfuse {
+
+enum class CellLabel : std::uint8_t { Outside, Inside };
+
+/// What lies beyond the domain.
+enum class Border {
+  Outside,  ///< empty space: an object seen from outside
+  Solid,    ///< matter: a room seen from within
+  Free,     ///< nothing is said
+};
+
+/// Two cells that share a face; `area` in finest faces h². cells.first is never the larger one.
+struct CellFace {
+  std::uint32_t first = 0, second = 0;
+  std::uint8_t axis = 0;
+  std::int8_t direction = 1;  ///< from first to second along the axis
+  std::uint16_t area = 1;
+};
+
+/// All pairs of cells that share a face, each once, in an order that does not depend on threads.
+std::vector<CellFace> cellFaces(const Octree& octree);
+
+struct CutOptions {
+  double mu = 2.0;      ///< ρ = e^(−μ C): where two reliable views agree a surface costs next to nothing
+  double lambda = 0.0;  ///< weight of σ, 1/length; a part of thickness τ survives if λ |σ| τ ≥ 2ρ
+  double max_evidence =
+      10.0;  ///< |σ| is clamped to this, so that no place is beyond the reach of its surroundings
+  Border border = Border::Outside;
+};
+
+struct CutEnergy {
+  double surface = 0;  ///< ∫ ρ dA, in units of length²
+  double volume = 0;   ///< λ ∫_V σ dV, in the same unit
+};
+
+struct Labelling {
+  std::vector<CellLabel> labels;  ///< a cell each
+  std::int64_t flow = 0;          ///< in units of the integer scale
+  bool certified = false;         ///< the certificate of the cut was checked and holds
+  std::size_t nodes = 0, arcs = 0;
+  CutEnergy energy;
+};
+
+/// The global minimum of (1) with the face-sharing graph's metric. `support`: C at each cell; `sigma`:
+/// evidence. ρ at a face is e^(−μ C) with C the mean of both sides. Capacities are integers: 2¹⁵ units per h²
+/// of ρ. Among minimal solids the smallest is returned. REQUIRES: arrays of octree.cellCount() values.
+Labelling cutCells(const Octree& octree, const std::vector<CellFace>& faces,
+                   const std::vector<float>& support, const std::vector<float>& sigma,
+                   const CutOptions& options, const Progress& progress = {});
+
+struct CavityReport {
+  std::size_t filled = 0;  ///< components
+  double volume = 0;       ///< their volume, length³
+};
+
+/// Turns empty components that no sensor can see into solid: those that hold no sensor and do not reach the
+/// border (which is open unless it is solid and some sensor lies inside the domain).
+CavityReport fillUnseenCavities(const Octree& octree, const std::vector<CellFace>& faces,
+                                const std::vector<Eigen::Vector3d>& sensors, Border border,
+                                std::vector<CellLabel>& labels);
+
+/// Value of a finest grid at each cell: the voxel's own at a finest cell, 0 in coarser ones.
+std::vector<float> sampleFinest(const Octree& octree, const ScalarGrid& grid);
+
+}  // namespace vdbfuse

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// From depth maps to a surface: the whole line in one call.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdbfuse/base/progress.h"
+#include "vdbfuse/fusion/evidence.h"
+#include "vdbfuse/fusion/reliability.h"
+#include "vdbfuse/geometry/box.h"
+#include "vdbfuse/mesh/triangle_mesh.h"
+#include "vdbfuse/octree/graph.h"
+#include "vdbfuse/sensor/view_sequence.h"
+#include "vdbfuse/surface/field.h"
+
+namespace vdbfuse {
+
+enum class Method {
+  Visibility,  ///< ρ, σ and a global minimum cut: watertight
+  Tsdf,        ///< Curless–Levoy: open where nothing was measured
+};
+
+/// Every zero or empty value means: from the data.
+struct ReconstructOptions {
+  Method method = Method::Visibility;
+
+  // The grid.
+  double voxel = 0.0;  ///< edge of the finest cells, unit of the poses; halving it costs about 4 ×
+  int resolution = 0;  ///< or: longest side of the domain / voxel. 0 and voxel 0: the data's own resolution
+  std::optional<Box> domain;  ///< world box; default: where reliable pixels of several views agree
+  int max_level = 6;          ///< coarsest cells are 2^max_level voxels wide
+  /// What lies beyond the domain; default: solid when most sensors are inside it, else outside.
+  std::optional<Border> border;
+
+  // The sensor.
+  double min_depth = 0.0, max_depth = 0.0;  ///< depths outside are taken as not measured
+  NoiseShape noise_shape = NoiseShape::Gaussian;
+  double noise_scale = 0.0;  ///< standard deviation at the median depth; default: from overlapping views
+  std::optional<double>
+      outliers;  ///< outlier share, the same for every pixel; default: judged pixel by pixel
+  JudgeOptions judge;
+
+  // The energy.
+  EvidenceOptions evidence;
+  double mu = 2.0;      ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
+  double lambda = 0.0;  ///< weight of σ, 1/length; default 0.3/max(voxel, median noise)
+
+  // The surface.
+  double smoothing_voxels = 1.0;
+  double truncation = 0.0;  ///< of the TSDF, length; default max(4 voxels, 3 × noise)
+
+  /// Keep ρ, σ, support and the signed field in the result.
+  enum class Grids { Drop, Keep } grids = Grids::Drop;
+};
+
+/// Everything that is wrong with the options, one sentence each.
+std::vector<std::string> validate(const ReconstructOptions& options);
+
+/// What was found out about the sensor.
+struct CalibrationReport {
+  double noise_scale = 0;  ///< at the median depth
+  int noise_exponent = 0;  ///< of depth: 0, 1 or 2
+  double median_depth = 0;
+  double miss_rate = 0;
+  double outlier_share = 0;
+  double near = 0, far = 0;
+  ConfidenceDirection confidence = ConfidenceDirection::None;
+};
+
+struct GridReport {
+  double voxel = 0;
+  Box domain;
+  std::size_t cells = 0;
+  std::vector<std::size_t> cells_by_level;
+  std::size_t active = 0;  ///< finest cells, or voxels of the TSDF
+  std::size_t leaves = 0;  ///< 8³ blocks of the support or TSDF grid
+};
+
+struct CutReportSummary {
+  std::int64_t flow = 0;
+  bool certified = false;
+  std::size_t nodes = 0, arcs = 0;
+  CutEnergy energy;
+  double lambda = 0;
+  Border border = Border::Outside;
+  CavityReport cavities;
+};
+
+struct Reconstruction {
+  TriangleMesh mesh;  ///< with normals and support
+  CalibrationReport calibration;
+  GridReport grid;
+  std::optional<CutReportSummary> cut;  ///< nothing for the TSDF
+  double invented_area_share = 0;       ///< share of the area that no view supports
+  std::vector<ScalarGrid> grids;
+  std::vector<StepTime> steps;
+  std::size_t width = 0, height = 0;  ///< of the first view
+};
+
+/// Throws InvalidArgument for unusable options or views, IoError from the views' loader, Cancelled, and Error
+/// when the result would be empty. Deterministic: the same mesh for any number of threads.
+Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& options = {},
+                           const Progress& progress = {});
+
+}  // namespace vdbfuse

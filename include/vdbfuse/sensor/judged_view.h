@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A view with what is known about the reliability of each of its pixels: the input of everything that fuses.
+#pragma once
+
+#include <vector>
+
+#include "vdbfuse/sensor/noise_model.h"
+#include "vdbfuse/sensor/view.h"
+
+namespace vdbfuse {
+
+/// Probabilities are kept away from 0 and 1, so that no single pixel can outvote all others.
+inline constexpr float kMinOutlier = 0.003f;
+inline constexpr float kMaxOutlier = 0.99f;
+
+struct JudgedView : ViewHeader {
+  Image<float> depth;
+  /// ε of each pixel: probability that its depth has nothing to do with the surface. Same size as `depth`.
+  Image<float> outlier;
+  /// Cosine between the optic ray and the surface normal; 0 where the normal is not known. Same size as
+  /// `depth`.
+  Image<float> incidence;
+  /// 1 where the sensor looked and nothing came back for a reason that means empty space; else 0.
+  Image<std::uint8_t> no_return;
+  /// w_i in (0, 1]: how much of this view is not a repetition of its neighbours.
+  double weight = 1.0;
+};
+
+/// Views judged, and the model of the sensor that all of them share.
+struct JudgedViews {
+  std::vector<JudgedView> views;
+  SensorModel sensor;
+  /// Share of no-returns where a confirmed point should have been seen.
+  double miss_rate = 0.5;
+};
+
+/// Views that are believed as they are: every valid pixel has outlier probability `outlier`.
+JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier = kMinOutlier);
+
+/// Noise scale of a measurement that is looked up at the nearest pixel: sensor noise plus the slack of a
+/// slanted surface, about 0.4 pixel footprints.
+double lookupNoise(const SensorModel& sensor, const Projection& projection, double depth);
+
+}  // namespace vdbfuse

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/fusion/domain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse {
+namespace {
+
+constexpr double kPixelsPerView = 20000;
+constexpr int kPlacesPerSide = 100;
+constexpr double kEnoughPoints = 3.0;
+constexpr double kMargin = 0.03;
+
+struct ReliablePoint {
+  Eigen::Vector3d position;
+  std::uint32_t view;
+  float trust;
+};
+
+std::vector<ReliablePoint> reliablePoints(const JudgedViews& judged) {
+  std::vector<ReliablePoint> points;
+  for (std::size_t i = 0; i < judged.views.size(); ++i) {
+    const JudgedView& view = judged.views[i];
+    const int stride =
+        std::max(1, static_cast<int>(std::sqrt(static_cast<double>(view.depth.size()) / kPixelsPerView)));
+    for (int y = stride / 2; y < view.depth.height(); y += stride) {
+      for (int x = stride / 2; x < view.depth.width(); x += stride) {
+        const float depth = view.depth(x, y), outlier = view.outlier(x, y);
+        if (depth == kInvalidDepth || outlier > 0.5f) continue;
+        const Eigen::Vector3d point = view.world_from_camera * unproject(view.projection, x, y, depth);
+        points.push_back({point, static_cast<std::uint32_t>(i), 1 - outlier});
+      }
+    }
+  }
+  return points;
+}
+
+// Box that holds most of the points, whatever the others do.
+Box roughBox(const std::vector<ReliablePoint>& points) {
+  Box box;
+  std::vector<double> values(points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(points.begin(), points.end(), values.begin(),
+                   [axis](const auto& p) { return p.position[axis]; });
+    const auto quantile = [&](double share) {
+      const auto nth =
+          values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+      std::nth_element(values.begin(), nth, values.end());
+      return *nth;
+    };
+    const double low = quantile(0.01), high = quantile(0.99);
+    box.min()[axis] = low - 0.5 * (high - low), box.max()[axis] = high + 0.5 * (high - low);
+  }
+  return box;
+}
+
+struct Place {
+  double trust = 0;
+  std::uint32_t first_view = 0;
+  bool several_views = false;
+};
+
+}  // namespace
+
+Box supportedDomain(const JudgedViews& judged) {
+  const std::vector<ReliablePoint> points = reliablePoints(judged);
+  if (points.empty())
+    throw InvalidArgument("views", "no depth is believed by any other view; nothing to reconstruct");
+  const Box rough = roughBox(points);
+  const double side = std::max(rough.sizes().maxCoeff() / kPlacesPerSide, 1e-9);
+  std::unordered_map<std::uint64_t, Place> places;
+  const auto placeOf = [&](const Eigen::Vector3d& point) {
+    const Eigen::Matrix<std::uint64_t, 3, 1> cell = ((point - rough.min()) / side).cast<std::uint64_t>();
+    return cell.x() | cell.y() << 20 | cell.z() << 40;
+  };
+  for (const ReliablePoint& point : points) {
+    if (!rough.contains(point.position)) continue;
+    const auto [entry, is_new] = places.try_emplace(placeOf(point.position));
+    Place& place = entry->second;
+    if (is_new) place.first_view = point.view;
+    place.several_views |= place.first_view != point.view;
+    place.trust += point.trust;
+  }
+  Box box;
+  for (const ReliablePoint& point : points) {
+    if (!rough.contains(point.position)) continue;
+    const Place& place = places.at(placeOf(point.position));
+    if (place.trust < kEnoughPoints || !(place.several_views || judged.views.size() == 1)) continue;
+    box.extend(point.position);
+  }
+  if (box.isEmpty())
+    throw InvalidArgument("views", "the views do not overlap: no place is seen by two of them");
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kMargin * box.diagonal().norm());
+  return {box.min() - margin, box.max() + margin};
+}
+
+void widenRange(JudgedViews& judged, const Box& domain) {
+  constexpr int kSteps = 4;  // points along each side of the box: rays through its middle matter too
+  SensorModel& sensor = judged.sensor;
+  for (const JudgedView& view : judged.views) {
+    const RigidTransform camera_from_world = view.world_from_camera.inverse();
+    for (int i = 0; i < (kSteps + 1) * (kSteps + 1) * (kSteps + 1); ++i) {
+      const Eigen::Array3d share(i % (kSteps + 1), i / (kSteps + 1) % (kSteps + 1),
+                                 i / (kSteps + 1) / (kSteps + 1));
+      const Eigen::Vector3d point = domain.min().array() + domain.sizes().array() * share / kSteps;
+      const std::optional<PixelDepth> seen = project(view.projection, camera_from_world * point);
+      if (!seen) continue;
+      sensor.near = std::min(sensor.near, 0.97 * seen->depth);
+      sensor.far = std::max(sensor.far, 1.03 * seen->depth);
+    }
+  }
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/fusion/tsdf.h"
+
+#include <algorithm>
+
+#include "fusion/prepared_view.h"
+#include "fusion/touched_leaves.h"
+#include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/parallel.h"
+
+namespace vdbfuse {
+namespace {
+
+// Running sums of one view over one leaf.
+void addView(const PreparedView& prepared, const GridFrame& frame, double truncation,
+             const ScalarGrid::Leaf& sum, const ScalarGrid::Leaf& weight) {
+  for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
+    const Index3 voxel = sum.origin + Index3(k >> 6, (k >> 3) & 7, k & 7);
+    const std::optional<Sighting> seen = prepared.projector(frame.toWorld(voxel));
+    if (!seen) continue;
+    const float measured = prepared.view->depth(seen->x, seen->y);
+    if (measured == kInvalidDepth || measured - seen->depth < -truncation) continue;
+    sum.values[static_cast<std::size_t>(k)] +=
+        static_cast<float>(std::min(measured - seen->depth, truncation));
+    weight.values[static_cast<std::size_t>(k)] += 1.0f;
+  }
+}
+
+}  // namespace
+
+TsdfVolume integrateTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
+                         const TsdfOptions& options, const Progress& progress) {
+  if (!(options.truncation > 0)) throw InvalidArgument("truncation", "must be positive");
+  const std::vector<PreparedView> views = prepare(judged);
+  const TouchOptions touch{1.0f, [&](double) { return options.truncation; }};
+  const std::vector<Index3> leaves = touchedLeaves(views, frame, domain, touch, progress);
+  TsdfVolume volume{ScalarGrid("surface", frame, 0.0f, leaves), ScalarGrid("weight", frame, 0.0f, leaves)};
+  ProgressStep step(progress, "integrate", leaves.size());
+  parallelFor(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ScalarGrid::Leaf sum = volume.distance.leaf(i), weight = volume.weight.leaf(i);
+      for (const PreparedView& view : views) addView(view, frame, options.truncation, sum, weight);
+      std::transform(sum.values.begin(), sum.values.end(), weight.values.begin(), sum.values.begin(),
+                     [](float s, float w) { return w > 0 ? s / w : kUnknown; });
+    }
+    step.advance(end - begin);
+  });
+  volume.distance.setKind(GridKind::LevelSet);
+  volume.distance.metadata()["about"] = "truncated signed distance (Curless and Levoy 1996), > 0 outside";
+  return volume;
+}
+
+std::vector<double> untruncatedSum(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points) {
+  const std::vector<PreparedView> views = prepare(judged);
+  std::vector<double> sums(points.size(), 0.0);
+  for (const PreparedView& prepared : views) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::optional<Sighting> seen = prepared.projector(points[i]);
+      if (!seen) continue;
+      const float measured = prepared.view->depth(seen->x, seen->y);
+      if (measured == kInvalidDepth) continue;
+      sums[i] += prepared.view->weight * (measured - seen->depth) / prepared.noise.at(measured);
+    }
+  }
+  return sums;
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// The heart of the minimum cut: two forests of shortest paths that grow towards each other.
+//
+// Vocabulary. The *source forest* holds every node that residual arcs lead to from a node with an excess, as
+// far as it has grown; the *sink forest* every node from which residual arcs lead to a node with a deficit.
+// Roots are the nodes with an excess (a deficit), at level 1 at the start; a child is one level deeper than
+// its parent. The forests grow in turn, a level at a time. Where a residual arc leads from the source forest
+// to the sink forest (a *bridge*) it is filled at once: its head gets an excess, its tail a deficit. Both
+// travel rootwards, deepest level first, so that what comes from many bridges meets and travels together. A
+// node whose arc to its parent is filled, and a root that is used up, is an *orphan*: it takes the nearest
+// other parent, shallowest level first, or leaves the forest. An excess that cannot leave the sink forest so
+// ends in a node that changes forest and becomes a root there; the same for deficits.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "vdbfuse/base/progress.h"
+#include "vdbfuse/mincut/network.h"
+#include "vdbfuse/mincut/solve.h"
+
+namespace vdbfuse::mincut {
+
+enum class Tree : std::uint8_t { Source, Sink };
+
+constexpr Tree opposite(Tree tree) { return tree == Tree::Source ? Tree::Sink : Tree::Source; }
+
+constexpr std::uint32_t kNotQueued = 0xffffffff;
+constexpr std::uint32_t kEndOfList = 0xfffffffe;
+
+/// Nodes waiting to be processed, by level; a list in linked form, whose links are shared by all queues, for
+/// a node waits in at most one.
+class LevelQueue {
+ public:
+  bool empty() const { return size_ == 0; }
+  std::int32_t lowest() const { return lowest_; }
+  std::int32_t highest() const { return highest_; }
+  void push(std::uint32_t node, std::int32_t level, std::vector<std::uint32_t>& links);
+  /// Takes a node off the lowest (highest) level. REQUIRES: not empty.
+  std::uint32_t popLowest(std::vector<std::uint32_t>& links);
+  std::uint32_t popHighest(std::vector<std::uint32_t>& links);
+
+ private:
+  std::uint32_t pop(std::int32_t level, std::vector<std::uint32_t>& links);
+  std::vector<std::uint32_t> tops_;
+  std::size_t size_ = 0;
+  std::int32_t lowest_ = 0;
+  std::int32_t highest_ = 0;
+};
+
+class Forests {
+ public:
+  Forests(const Network& network, const Progress& progress);
+
+  /// Grows both forests until one cannot grow any more: the flow is maximum.
+  void maximiseFlow();
+  /// Grows this forest alone to its end. After maximiseFlow() nothing is left to meet: it ends as the set of
+  /// all nodes that its roots are connected with.
+  template <Tree T>
+  void exhaust();
+
+  /// Moves the result out; `ties` names the forest that was exhausted.
+  MinCut takeResult(CutTies ties);
+
+ private:
+  struct Node {
+    std::int64_t excess;   ///< terminal + inflow − outflow
+    std::uint32_t parent;  ///< arc to the parent, kRoot, or anything where level == 0
+    std::int32_t level;    ///< > 0: source forest, < 0: sink forest, 0: neither
+  };
+  /// Nodes on a forest's deepest level, whose arcs out of the forest nobody has looked at yet.
+  struct Frontier {
+    std::vector<std::uint32_t> nodes;     ///< may hold nodes that have left the level since
+    std::vector<std::uint32_t> scanning;  ///< the level above while the forest grows
+    std::int32_t level = 1;
+    bool growing = false;
+  };
+
+  static constexpr std::uint32_t kRoot = 0xffffffff;
+
+  template <Tree T>
+  bool isIn(const Node& node) const {
+    return T == Tree::Source ? node.level > 0 : node.level < 0;
+  }
+  template <Tree T>
+  static std::int32_t depth(const Node& node) {
+    return T == Tree::Source ? node.level : -node.level;
+  }
+  template <Tree T>
+  static std::int32_t levelAt(std::int32_t depth) {
+    return T == Tree::Source ? depth : -depth;
+  }
+  /// What could still be pushed along `arc` (against it, in the source forest) on the way to the root.
+  template <Tree T>
+  std::uint32_t room(std::uint32_t arc) const {
+    return residual_[T == Tree::Source ? network_.mate(arc) : arc];
+  }
+  template <Tree T>
+  Frontier& frontier() {
+    return frontiers_[static_cast<std::size_t>(T)];
+  }
+  bool isQueued(std::uint32_t node) const { return links_[node] != kNotQueued; }
+
+  template <Tree T>
+  void place(std::uint32_t node, std::uint32_t parent, std::int32_t depth);
+  template <Tree T>
+  void growLevel();
+  template <Tree T>
+  void scan(std::uint32_t node);
+  void fillBridge(std::uint32_t arc, std::uint32_t tail);
+  std::int64_t supply(std::uint32_t node) const;
+  void pull(std::uint32_t node, std::uint32_t amount);
+  void push(std::uint32_t arc, std::uint32_t amount);
+  static bool mustPush(const Node& node);
+  void arrive(std::uint32_t node, std::uint32_t amount);
+  void drain();
+  void pushRootwards(std::uint32_t node);
+  template <Tree T>
+  void orphan(std::uint32_t node);
+  template <Tree T>
+  void adopt(std::uint32_t node);
+  template <Tree T>
+  std::uint32_t nearestParent(std::uint32_t node) const;
+  template <Tree T>
+  void orphanChildren(std::uint32_t node);
+  template <Tree T>
+  void release(std::uint32_t node);
+  void tick();
+
+  const Network& network_;
+  const Progress& progress_;
+  std::vector<std::uint32_t> residual_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> links_;
+  std::array<Frontier, 2> frontiers_;
+  LevelQueue loads_;
+  LevelQueue orphans_;
+  std::vector<std::uint32_t> loaded_orphans_;
+  SolveStatistics statistics_;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t in_forests_ = 0;
+};
+
+}  // namespace vdbfuse::mincut

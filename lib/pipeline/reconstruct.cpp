@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/pipeline/reconstruct.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/steps.h"
+#include "vdbfuse/base/errors.h"
+#include "vdbfuse/fusion/agreement.h"
+#include "vdbfuse/fusion/tsdf.h"
+#include "vdbfuse/surface/extract.h"
+
+namespace vdbfuse {
+namespace {
+
+// The minimum of (1): the paper's section 3 from the depth maps on.
+void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
+                   const ReconstructOptions& options, const Progress& progress, StepTimer& timer,
+                   Reconstruction& result) {
+  timer.start("agreement");
+  ScalarGrid support = countAgreement(judged, frame, domain, progress);  // C(x), eq. (3)
+
+  timer.start("octree");
+  const Octree octree = buildOctree(support, kSupported, domain, {options.max_level});
+  const std::vector<CellFace> faces = cellFaces(octree);
+
+  timer.start("evidence");
+  std::vector<float> sigma = evidence(judged, octree, options.evidence, progress);  // σ(x)
+
+  timer.start("cut");
+  const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
+  Labelling cut =
+      cutCells(octree, faces, sampleFinest(octree, support), sigma, cut_options, progress);  // (1)
+  const CavityReport cavities =
+      fillUnseenCavities(octree, faces, sensorPositions(judged), cut_options.border, cut.labels);
+
+  timer.start("surface");
+  const CellLabel beyond = cut_options.border == Border::Solid ? CellLabel::Inside : CellLabel::Outside;
+  const FieldOptions field_options{options.smoothing_voxels, kSupported, beyond};
+  ScalarGrid field = signedField(judged, octree, faces, cut.labels, support, field_options, progress);
+  result.mesh = extractSurface(field, progress);
+  describeVertices(support, result);
+
+  result.grid = describeGrid(octree, support, domain);
+  result.cut = CutReportSummary{cut.flow,   cut.certified,      cut.nodes,          cut.arcs,
+                                cut.energy, cut_options.lambda, cut_options.border, cavities};
+  if (options.grids == ReconstructOptions::Grids::Drop) return;
+  result.grids = levelGrids(octree, sigma, "sigma", static_cast<float>(options.evidence.prior));
+  result.grids.push_back(discontinuityCost(support, options.mu));
+  result.grids.push_back(std::move(support));
+  result.grids.push_back(std::move(field));
+}
+
+void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
+              const ReconstructOptions& options, const Progress& progress, StepTimer& timer,
+              Reconstruction& result) {
+  timer.start("integrate");
+  const double truncation = options.truncation > 0
+                                ? options.truncation
+                                : std::max(4 * frame.voxel, 3 * result.calibration.noise_scale);
+  TsdfVolume volume = integrateTsdf(judged, frame, domain, {truncation}, progress);
+  timer.start("surface");
+  result.mesh = extractSurface(volume.distance, progress);
+  describeVertices(volume.weight, result);
+  result.grid = describeGrid(volume.distance, domain);
+  if (options.grids == ReconstructOptions::Grids::Drop) return;
+  result.grids.push_back(std::move(volume.distance));
+  result.grids.push_back(std::move(volume.weight));
+}
+
+}  // namespace
+
+Reconstruction reconstruct(const ViewSequence& sequence, const ReconstructOptions& options,
+                           const Progress& progress) {
+  requireUsable(sequence, options);
+  Reconstruction result;
+  StepTimer timer;
+
+  timer.start("load");
+  std::vector<View> views = loadViews(sequence, options, progress);
+  result.width = static_cast<std::size_t>(views.front().map.depth.width());
+  result.height = static_cast<std::size_t>(views.front().map.depth.height());
+
+  timer.start("calibrate");
+  const DepthStatistics depths = depthStatistics(views);
+  const ViewGraph graph = makeGraph(views, depths);
+  const SensorModel sensor = calibrateSensor(views, graph, depths, options, result.calibration, progress);
+
+  timer.start("judge");
+  JudgedViews judged =
+      judgeViews(std::move(views), sensor, graph, options, result.calibration, progress);  // ε, w
+
+  const Box domain = options.domain ? *options.domain : supportedDomain(judged);
+  widenRange(judged, domain);
+  result.calibration.near = judged.sensor.near, result.calibration.far = judged.sensor.far;
+  const GridFrame frame = chooseFrame(judged, domain, depths, options);
+
+  if (options.method == Method::Tsdf) {
+    fuseTsdf(judged, frame, domain, options, progress, timer, result);
+  } else {
+    cutVisibility(judged, frame, domain, options, progress, timer, result);
+  }
+  if (result.mesh.triangles.empty()) {
+    throw Error(
+        "the result is empty: no surface inside the domain is supported by the depth maps "
+        "(check units and poses with 'vdbfuse info', or give --bbox)");
+  }
+  result.steps = timer.finish();
+  return result;
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/fusion/agreement.h"
+
+namespace vdbfuse {
+namespace {
+
+// A default voxel never makes the longest side of the domain longer than this.
+constexpr double kDefaultLongestSide = 512;
+constexpr double kLambdaPerVoxel = 0.3;
+
+double scaleAtExponent(const NoiseLaw& law, double typical, int exponent) {
+  return law.at(typical) / std::pow(typical, exponent);
+}
+
+NoiseLaw lawThrough(double scale, double typical, int exponent) {
+  const double factor = scaleAtExponent({scale, 0, 0}, typical, exponent);
+  if (exponent == 0) return {factor, 0, 0};
+  return exponent == 1 ? NoiseLaw{0, factor, 0} : NoiseLaw{0, 0, factor};
+}
+
+Border chooseBorder(const JudgedViews& judged, const Box& domain) {
+  const std::vector<Eigen::Vector3d> sensors = sensorPositions(judged);
+  const auto inside =
+      std::count_if(sensors.begin(), sensors.end(), [&](const auto& p) { return domain.contains(p); });
+  return 2 * static_cast<std::size_t>(inside) > sensors.size() ? Border::Solid : Border::Outside;
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const ReconstructOptions& options) {
+  std::vector<std::string> problems = validate(options.evidence);
+  const auto require = [&](bool good, const char* sentence) {
+    if (!good) problems.emplace_back(sentence);
+  };
+  require(options.voxel >= 0 && std::isfinite(options.voxel), "voxel must be positive");
+  require(options.resolution >= 0, "resolution must be positive");
+  require(options.voxel == 0 || options.resolution == 0, "voxel and resolution exclude each other");
+  require(!options.domain || !options.domain->isEmpty(), "the box of the domain is empty");
+  require(options.max_level >= 0 && options.max_level <= 6, "max_level must lie in 0 ... 6");
+  require(options.min_depth >= 0 && options.max_depth >= 0, "depth limits must not be negative");
+  require(options.max_depth == 0 || options.max_depth > options.min_depth, "max_depth must exceed min_depth");
+  require(options.noise_scale >= 0, "noise_scale must be positive");
+  require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
+          "outliers must lie in [0, 1)");
+  require(options.mu >= 0 && options.lambda >= 0, "mu and lambda must not be negative");
+  require(options.smoothing_voxels >= 0 && options.smoothing_voxels <= 2,
+          "smoothing_voxels must lie in [0, 2]");
+  require(options.truncation >= 0, "truncation must be positive");
+  return problems;
+}
+
+void requireUsable(const ViewSequence& views, const ReconstructOptions& options) {
+  const std::vector<std::string> problems = validate(options);
+  if (!problems.empty()) throw InvalidArgument("options", problems.front());
+  if (views.empty()) throw InvalidArgument("views", "there are none");
+}
+
+std::vector<View> loadViews(const ViewSequence& sequence, const ReconstructOptions& options,
+                            const Progress& progress) {
+  std::vector<View> views(sequence.size());
+  ProgressStep step(progress, "load views", sequence.size());
+  parallelFor(sequence.size(), 1, [&](std::size_t i, std::size_t) {
+    views[i] = sequence.load(i);
+    for (float& d : views[i].map.depth) {
+      if (d < options.min_depth || (options.max_depth > 0 && d > options.max_depth)) d = kInvalidDepth;
+    }
+    views[i].map.color = {};
+    step.advance();
+  });
+  return views;
+}
+
+ViewGraph makeGraph(const std::vector<View>& views, const DepthStatistics& depths) {
+  std::vector<const ViewHeader*> headers;
+  for (const View& view : views) headers.push_back(&view);
+  return {headers, depths.median};
+}
+
+SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& graph,
+                            const DepthStatistics& depths, const ReconstructOptions& options,
+                            CalibrationReport& report, const Progress& progress) {
+  const NoiseLaw guess = guessNoise(views, depths.median);
+  const NoiseCalibration found = calibrateNoise(views, graph, guess, depths.median, progress);
+  SensorModel sensor{options.noise_shape, found.noise, depths.near, depths.far};
+  if (options.noise_scale > 0) sensor.noise = lawThrough(options.noise_scale, depths.median, found.exponent);
+  report.noise_scale = sensor.noise.at(depths.median);
+  report.noise_exponent = found.exponent;
+  report.median_depth = depths.median;
+  return sensor;
+}
+
+JudgedViews judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
+                       const ReconstructOptions& options, CalibrationReport& report,
+                       const Progress& progress) {
+  Judgement judgement = judge(std::move(views), sensor, graph, options.judge, progress);
+  report.miss_rate = judgement.judged.miss_rate;
+  report.outlier_share = judgement.model.outlier_share;
+  report.confidence = confidenceDirection(judgement.model);
+  if (options.outliers) {
+    report.outlier_share = *options.outliers;
+    const float outlier = std::clamp(static_cast<float>(*options.outliers), 1e-6f, kMaxOutlier);
+    for (JudgedView& view : judgement.judged.views)
+      std::fill(view.outlier.begin(), view.outlier.end(), outlier);
+  }
+  return std::move(judgement.judged);
+}
+
+GridFrame chooseFrame(const JudgedViews& judged, const Box& domain, const DepthStatistics& depths,
+                      const ReconstructOptions& options) {
+  const double longest = domain.sizes().maxCoeff();
+  if (options.voxel > 0) return {options.voxel};
+  if (options.resolution > 0) return {longest / options.resolution};
+  const double pixel = footprint(judged.views.front().projection, depths.median);
+  return {std::max({pixel, judged.sensor.noise.at(depths.median), longest / kDefaultLongestSide})};
+}
+
+CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
+                      const CalibrationReport& calibration, const ReconstructOptions& options) {
+  CutOptions cut;
+  cut.mu = options.mu;
+  cut.lambda =
+      options.lambda > 0 ? options.lambda : kLambdaPerVoxel / std::max(frame.voxel, calibration.noise_scale);
+  cut.border = options.border.value_or(chooseBorder(judged, domain));
+  return cut;
+}
+
+std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const JudgedView& view : judged.views) positions.push_back(view.world_from_camera.translation());
+  return positions;
+}
+
+void describeVertices(const ScalarGrid& support, Reconstruction& result) {
+  TriangleMesh& mesh = result.mesh;
+  mesh.normals = vertexNormals(mesh);
+  mesh.support.assign(mesh.vertices.size(), 0.0f);
+  parallelFor(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      mesh.support[v] = support.interpolate(support.frame().toIndex(mesh.vertices[v].cast<double>()));
+    }
+  });
+  double all = 0, invented = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Eigen::Vector3f a = mesh.vertices[t[1]] - mesh.vertices[t[0]],
+                          b = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+    const double area = 0.5 * a.cross(b).norm();
+    all += area;
+    if (std::max({mesh.support[t[0]], mesh.support[t[1]], mesh.support[t[2]]}) < kSupported) invented += area;
+  }
+  result.invented_area_share = all > 0 ? invented / all : 0;
+}
+
+GridReport describeGrid(const Octree& octree, const ScalarGrid& support, const Box& domain) {
+  GridReport report{octree.frame.voxel,   domain, octree.cellCount(),
+                    cellsByLevel(octree), 0,      support.leafCount()};
+  report.active = report.cells_by_level.front();
+  return report;
+}
+
+GridReport describeGrid(const ScalarGrid& field, const Box& domain) {
+  const std::size_t voxels = field.leafCount() * ScalarGrid::kLeafSize;
+  return {field.frame().voxel, domain, 0, {}, voxels, field.leafCount()};
+}
+
+}  // namespace vdbfuse

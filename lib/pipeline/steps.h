@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The small decisions between the big steps of reconstruct().
+#pragma once
+
+#include "vdbfuse/fusion/calibrate.h"
+#include "vdbfuse/fusion/domain.h"
+#include "vdbfuse/pipeline/reconstruct.h"
+
+namespace vdbfuse {
+
+void requireUsable(const ViewSequence& views, const ReconstructOptions& options);
+
+/// All views in memory, depths outside [min_depth, max_depth] dropped.
+std::vector<View> loadViews(const ViewSequence& views, const ReconstructOptions& options,
+                            const Progress& progress);
+
+ViewGraph makeGraph(const std::vector<View>& views, const DepthStatistics& depths);
+
+SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& graph,
+                            const DepthStatistics& depths, const ReconstructOptions& options,
+                            CalibrationReport& report, const Progress& progress);
+
+JudgedViews judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
+                       const ReconstructOptions& options, CalibrationReport& report,
+                       const Progress& progress);
+
+/// Voxels at integer multiples of the voxel size from the world's origin.
+GridFrame chooseFrame(const JudgedViews& judged, const Box& domain, const DepthStatistics& depths,
+                      const ReconstructOptions& options);
+
+CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
+                      const CalibrationReport& calibration, const ReconstructOptions& options);
+
+std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged);
+
+/// Normals, support of each vertex and the share of the area without any.
+void describeVertices(const ScalarGrid& support, Reconstruction& result);
+
+GridReport describeGrid(const Octree& octree, const ScalarGrid& support, const Box& domain);
+GridReport describeGrid(const ScalarGrid& field, const Box& domain);
+
+}  // namespace vdbfuse

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/sensor/judged_view.h"
+
+#include <cmath>
+
+namespace vdbfuse {
+
+JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier) {
+  JudgedViews result;
+  result.sensor = sensor;
+  for (View& view : views) {
+    JudgedView judged;
+    static_cast<ViewHeader&>(judged) = std::move(static_cast<ViewHeader&>(view));
+    judged.depth = std::move(view.map.depth);
+    judged.outlier = Image<float>(judged.depth.width(), judged.depth.height(), static_cast<float>(outlier));
+    judged.incidence = Image<float>(judged.depth.width(), judged.depth.height());
+    judged.no_return = Image<std::uint8_t>(judged.depth.width(), judged.depth.height());
+    result.views.push_back(std::move(judged));
+  }
+  return result;
+}
+
+double lookupNoise(const SensorModel& sensor, const Projection& projection, double depth) {
+  constexpr double kSlackPixels = 0.4;
+  return std::hypot(sensor.noise.at(depth), kSlackPixels * footprint(projection, depth));
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/surface/field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "surface/label_blocks.h"
+#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/geometry/projector.h"
+
+namespace vdbfuse {
+namespace {
+
+constexpr int kReach = 4;             // voxels around the boundary that are looked at
+constexpr double kCutOff = 2.0;       // voxels: largest distance that is kept
+constexpr double kSameSide = 1.5;     // noise widths or voxels: beyond this a view sees another surface
+constexpr float kPutBack = 0.05f;     // voxels: what a voxel gets whose smoothed value has the wrong sign
+constexpr float kLeastCosine = 0.2f;  // incidence of pixels without a normal
+constexpr std::size_t kLeavesPerTask = 8;
+
+Index3 voxelOf(int i) { return {i >> 6, i >> 3 & 7, i & 7}; }
+
+// A leaf with a margin of R voxels taken from its 26 neighbours.
+template <int R>
+struct Padded {
+  static constexpr int kSide = 8 + 2 * R;
+  std::array<float, static_cast<std::size_t>(kSide* kSide* kSide)> values;
+  float& at(int x, int y, int z) {
+    return values[static_cast<std::size_t>(((x + R) * kSide + y + R) * kSide + z + R)];
+  }
+  float at(int x, int y, int z) const {
+    return values[static_cast<std::size_t>(((x + R) * kSide + y + R) * kSide + z + R)];
+  }
+};
+
+template <int R>
+Padded<R> loadPadded(const ScalarGrid& grid, const Index3& origin) {
+  Padded<R> result;
+  result.values.fill(kUnknown);
+  for (int n = 0; n < 27; ++n) {
+    const Index3 offset = 8 * (Index3(n % 3, n / 3 % 3, n / 9).array() - 1).matrix();
+    const std::optional<std::size_t> found = grid.findLeaf(origin + offset);
+    if (!found) continue;
+    const ScalarGrid::Leaf leaf = grid.leaf(*found);
+    const Index3 low = offset.cwiseMax(-R), high = (offset.array() + 8).min(8 + R);
+    for (int x = low.x(); x < high.x(); ++x) {
+      for (int y = low.y(); y < high.y(); ++y) {
+        for (int z = low.z(); z < high.z(); ++z) {
+          result.at(x, y, z) = leaf.at(x - offset.x(), y - offset.y(), z - offset.z());
+        }
+      }
+    }
+  }
+  return result;
+}
+
+// The mean signed distance that the depth maps give a point.
+class DistanceMeter {
+ public:
+  DistanceMeter(const JudgedViews& judged, double voxel) : judged_(judged), voxel_(voxel) {
+    for (const JudgedView& view : judged.views)
+      projectors_.emplace_back(view.projection, view.world_from_camera);
+  }
+
+  // Nothing when no view that sees this side of the surface measured it.
+  std::optional<double> at(const Eigen::Vector3d& point, CellLabel label) const {
+    double sum = 0, weights = 0;
+    for (std::size_t i = 0; i < projectors_.size(); ++i) {
+      const std::optional<Sighting> seen = projectors_[i](point);
+      if (!seen) continue;
+      const JudgedView& view = judged_.views[i];
+      const float measured = view.depth(seen->x, seen->y);
+      if (measured == kInvalidDepth) continue;
+      const double distance = measured - seen->depth;
+      if (std::abs(distance) > 3 * voxel_ + 3 * judged_.sensor.noise.at(measured)) continue;
+      const double noise = lookupNoise(judged_.sensor, view.projection, measured);
+      const double contradiction = label == CellLabel::Outside ? -distance : distance;
+      if (contradiction > kSameSide * std::max(voxel_, noise)) continue;
+      const double cosine = std::max(view.incidence(seen->x, seen->y), kLeastCosine);
+      const double weight =
+          view.weight * (1 - view.outlier(seen->x, seen->y)) * cosine * cosine / (noise * noise);
+      sum += weight * distance * cosine;
+      weights += weight;
+    }
+    if (!(weights > 0)) return std::nullopt;
+    return sum / weights;
+  }
+
+ private:
+  const JudgedViews& judged_;
+  double voxel_;
+  std::vector<Projector> projectors_;
+};
+
+float towards(CellLabel label, float magnitude) {
+  return label == CellLabel::Outside ? magnitude : -magnitude;
+}
+CellLabel labelOf(float sign) { return sign > 0 ? CellLabel::Outside : CellLabel::Inside; }
+
+// Grid of +1 (outside) and −1 (inside) on all blocks around the boundary.
+ScalarGrid labelGrid(const Octree& octree, const std::vector<CellLabel>& labels, CellLabel beyond,
+                     std::vector<Index3> blocks) {
+  ScalarGrid grid("labels", octree.frame, kUnknown, std::move(blocks));
+  const LabelReader reader(octree, labels, beyond);
+  grid.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
+    std::array<CellLabel, ScalarGrid::kLeafSize> block;
+    reader.readBlock(leaf.origin, block.data());
+    std::transform(block.begin(), block.end(), leaf.values.begin(),
+                   [](CellLabel l) { return towards(l, 1.0f); });
+  });
+  return grid;
+}
+
+// Whether a voxel has another label within two voxels along some axis or diagonal neighbour.
+bool isNearBoundary(const Padded<2>& labels, const Index3& v) {
+  const float own = labels.at(v.x(), v.y(), v.z());
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = -2; z <= 2; ++z) {
+        if (labels.at(v.x() + x, v.y() + y, v.z() + z) == -own) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// First values: measured distance where supported, half a voxel elsewhere, the cut-off far from the boundary.
+void measureLeaf(const ScalarGrid& labels, const ScalarGrid& support, const DistanceMeter& meter,
+                 const FieldOptions& options, const ScalarGrid::Leaf& out) {
+  const Padded<2> near = loadPadded<2>(labels, out.origin);
+  const float voxel = static_cast<float>(labels.frame().voxel);
+  for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
+    const Index3 v = voxelOf(i);
+    const CellLabel label = labelOf(near.at(v.x(), v.y(), v.z()));
+    float& value = out.values[static_cast<std::size_t>(i)];
+    if (!isNearBoundary(near, v)) {
+      value = towards(label, static_cast<float>(kCutOff) * voxel);
+      continue;
+    }
+    value = towards(label, 0.5f * voxel);
+    if (support.at(out.origin + v) < options.supported) continue;
+    const std::optional<double> distance = meter.at(labels.frame().toWorld(Index3(out.origin + v)), label);
+    if (!distance) continue;
+    const float limit = static_cast<float>(kCutOff) * voxel;
+    value = std::clamp(static_cast<float>(*distance), -limit, limit);
+    if (labelOf(value) != label) value = towards(label, kPutBack * voxel);
+  }
+}
+
+std::array<float, 5> gaussianWeights(double sigma) {
+  std::array<float, 5> weights;
+  for (int k = -2; k <= 2; ++k)
+    weights[static_cast<std::size_t>(k + 2)] = static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma)));
+  return weights;
+}
+
+// Gaussian along one axis over the known values of a padded leaf; the margin along the other axes shrinks
+// later.
+void smoothAxis(Padded<2>& patch, int axis, const std::array<float, 5>& weights) {
+  const Padded<2> in = patch;
+  const Index3 step = Index3::Unit(axis);
+  Index3 low(-2, -2, -2), high(10, 10, 10);
+  low[axis] = 0, high[axis] = 8;
+  for (int x = low.x(); x < high.x(); ++x) {
+    for (int y = low.y(); y < high.y(); ++y) {
+      for (int z = low.z(); z < high.z(); ++z) {
+        float sum = 0, total = 0;
+        for (int k = -2; k <= 2; ++k) {
+          const float value = in.at(x + k * step.x(), y + k * step.y(), z + k * step.z());
+          if (std::isnan(value)) continue;
+          sum += weights[static_cast<std::size_t>(k + 2)] * value;
+          total += weights[static_cast<std::size_t>(k + 2)];
+        }
+        patch.at(x, y, z) = total > 0 ? sum / total : kUnknown;
+      }
+    }
+  }
+}
+
+void smoothLeaf(const ScalarGrid& field, const ScalarGrid& labels, const std::array<float, 5>& weights,
+                const ScalarGrid::Leaf& out) {
+  Padded<2> patch = loadPadded<2>(field, out.origin);
+  for (int axis = 0; axis < 3; ++axis) smoothAxis(patch, axis, weights);
+  const ScalarGrid::Leaf sides = labels.leaf(*labels.findLeaf(out.origin));
+  const float least = kPutBack * static_cast<float>(field.frame().voxel);
+  for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
+    const Index3 v = voxelOf(i);
+    const CellLabel label = labelOf(sides.values[static_cast<std::size_t>(i)]);
+    const float value = patch.at(v.x(), v.y(), v.z());
+    out.values[static_cast<std::size_t>(i)] = labelOf(value) == label ? value : towards(label, least);
+  }
+}
+
+}  // namespace
+
+ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const std::vector<CellFace>& faces,
+                       const std::vector<CellLabel>& labels, const ScalarGrid& support,
+                       const FieldOptions& options, const Progress& progress) {
+  const std::vector<Index3> blocks = boundaryBlocks(octree, faces, labels, options.beyond, kReach);
+  const ScalarGrid sides = labelGrid(octree, labels, options.beyond, blocks);
+  ScalarGrid measured("surface", octree.frame, kUnknown, blocks);
+  const DistanceMeter meter(judged, octree.frame.voxel);
+  ProgressStep step(progress, "place surface", measured.leafCount());
+  parallelFor(measured.leafCount(), kLeavesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) measureLeaf(sides, support, meter, options, measured.leaf(i));
+    step.advance(end - begin);
+  });
+  measured.setKind(GridKind::LevelSet);
+  measured.metadata()["about"] = "signed distance to the surface, > 0 outside";
+  if (!(options.smoothing_voxels > 0)) return measured;
+  ScalarGrid smooth("surface", octree.frame, kUnknown, blocks);
+  const std::array<float, 5> weights = gaussianWeights(options.smoothing_voxels);
+  smooth.forEachLeaf([&](const ScalarGrid::Leaf& leaf) { smoothLeaf(measured, sides, weights, leaf); });
+  smooth.setKind(GridKind::LevelSet);
+  smooth.metadata() = measured.metadata();
+  return smooth;
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "vdbfuse/mesh/topology.h"
+#include "vdbfuse/pipeline/reconstruct.h"
+
+namespace vdbfuse::tool {
+
+/// What a run of fuse knows besides its result.
+struct FuseContext {
+  std::filesystem::path input;
+  std::string format;
+  std::size_t views = 0;
+  ReconstructOptions options;
+  TopologyReport topology;
+};
+
+/// One JSON object: version, command, options (resolved), input, calibration, grid, energy, cut, mesh, steps, memory.
+void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result, const FuseContext& context);
+
+/// A few lines on stdout.
+void printFuseReport(const Reconstruction& result, const FuseContext& context, const std::filesystem::path& output);
+
+}  // namespace vdbfuse::tool
