@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string>
 
-#include "mesh_bytes.h"
+#include "file_bytes.h"
 #include "mesh_formats.h"
 #include "vdbfuse/base/errors.h"
 
@@ -55,8 +55,6 @@ void checkAfterReading(const std::filesystem::path& path, const TriangleMesh& me
 }
 
 }  // namespace
-
-void requireMeshFormat(const std::filesystem::path& path) { formatOf(path); }
 
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   const Format& format = formatOf(path);

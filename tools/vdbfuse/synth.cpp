@@ -30,8 +30,8 @@ const std::map<std::string, Arc> kArcs = {{"full", Arc::Full},
                                           {"front", Arc::Front},
                                           {"room", Arc::Room}};
 const std::map<std::string, SynthNoise> kNoiseLaws = {{"stereo", SynthNoise::Stereo},
-                                                    {"structured-light", SynthNoise::StructuredLight},
-                                                    {"constant", SynthNoise::Constant}};
+                                                      {"structured-light", SynthNoise::StructuredLight},
+                                                      {"constant", SynthNoise::Constant}};
 const std::map<std::string, ConfidenceKind> kConfidences = {{"informative", ConfidenceKind::Informative},
                                                             {"overlapping", ConfidenceKind::Overlapping},
                                                             {"none", ConfidenceKind::None}};
