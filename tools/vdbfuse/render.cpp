@@ -57,9 +57,8 @@ ViewHeader viewOf(const Request& request) {
 ViewHeader camera(const Request& request, const TriangleMesh& mesh, const Vector3d& up) {
   if (!request.from.empty()) return viewOf(request);
   if (mesh.triangles.empty()) throw IoError(request.input, "", "a mesh", "no triangles");
-  const Box box = boundingBox(mesh);
-  if (request.eye.empty()) return framingCamera(box, up, request.width, request.height);
-  const Vector3d target = request.look.empty() ? Vector3d(box.center()) : vector(request.look);
+  if (request.eye.empty()) return framingCamera(mesh, up, request.width, request.height);
+  const Vector3d target = request.look.empty() ? Vector3d(boundingBox(mesh).center()) : vector(request.look);
   return cameraLookingAt(vector(request.eye), target, up, request.width, request.height);
 }
 
