@@ -28,8 +28,7 @@ std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame&
       if (depth == kInvalidDepth || view.outlier(x, y) > options.max_outlier) continue;
       const Eigen::Vector3d point = view.world_from_camera * unproject(view.projection, x, y, depth);
       if (!domain.contains(point)) continue;
-      const double reach =
-          kKernelReach * std::max<double>(frame.voxel, prepared.noise.at(depth)) / frame.voxel;
+      const double reach = options.reach(prepared.noise.at(depth)) / frame.voxel;
       const Eigen::Vector3d index = frame.toIndex(point);
       const Index3 low = leafOrigin((index.array() - reach).floor().cast<int>().matrix());
       const Index3 high = leafOrigin((index.array() + reach).ceil().cast<int>().matrix());

@@ -32,7 +32,25 @@ void checkDepthLine(const std::filesystem::path& path, std::span<const TextLine>
 // Width of the image in whose middle the principal point would lie, per width of the depth map.
 double impliedRatio(double centre, int pixels) { return (2.0 * centre + 1.0) / pixels; }
 
-bool inTheMiddle(double ratio) { return ratio > 0.6 && ratio < 1.4; }
+bool roughlyInTheMiddle(double ratio) { return ratio > 0.6 && ratio < 1.4; }
+bool inTheMiddle(double ratio) { return ratio > 0.8 && ratio < 1.25; }
+
+// What fitToDepthMap() multiplies the intrinsics by.
+std::optional<double> intrinsicsScale(const Pinhole& camera, const PfmHeader& depth_map,
+                                      std::optional<double> depth_per_picture) {
+  const double x = impliedRatio(camera.cx, depth_map.width);
+  const double y = impliedRatio(camera.cy, depth_map.height);
+  if (roughlyInTheMiddle(x) || roughlyInTheMiddle(y)) return 1.0;
+  const auto fits = [&](double scale) { return inTheMiddle(x * scale) && inTheMiddle(y * scale); };
+  if (depth_per_picture && fits(*depth_per_picture)) return depth_per_picture;
+  if (x > 0 && y > 0) {
+    const double power_of_two = std::exp2(-std::round(std::log2(std::sqrt(x * y))));
+    if (fits(power_of_two)) return power_of_two;
+  }
+  const bool inside =
+      camera.cx >= 0 && camera.cy >= 0 && camera.cx < depth_map.width && camera.cy < depth_map.height;
+  return inside ? std::optional(1.0) : std::nullopt;
+}
 
 // Shortest text that reads back as the same number.
 std::string exact(double value) {
@@ -68,17 +86,9 @@ MvsnetCamera readMvsnetCamera(const std::filesystem::path& path) {
 
 std::optional<FittedCamera> fitToDepthMap(const Pinhole& camera, const PfmHeader& depth_map,
                                           std::optional<double> depth_per_picture) {
-  const double x = impliedRatio(camera.cx, depth_map.width);
-  const double y = impliedRatio(camera.cy, depth_map.height);
-  FittedCamera fitted{camera, 1.0};
-  if (!inTheMiddle(x) && !inTheMiddle(y)) {
-    if (!(x > 0 && y > 0)) return std::nullopt;
-    const double power_of_two = std::exp2(-std::round(std::log2(std::sqrt(x * y))));
-    const double of_picture = depth_per_picture.value_or(power_of_two);
-    const auto fits = [&](double scale) { return inTheMiddle(x * scale) && inTheMiddle(y * scale); };
-    fitted.scale = fits(of_picture) ? of_picture : power_of_two;
-    if (!fits(fitted.scale)) return std::nullopt;
-  }
+  const std::optional<double> scale = intrinsicsScale(camera, depth_map, depth_per_picture);
+  if (!scale) return std::nullopt;
+  FittedCamera fitted{camera, *scale};
   Pinhole& pinhole = fitted.pinhole;
   pinhole.width = depth_map.width, pinhole.height = depth_map.height;
   pinhole.fx *= fitted.scale, pinhole.fy *= fitted.scale;

@@ -27,10 +27,10 @@ struct FittedCamera {
   double scale = 1.0;  ///< what the intrinsics were multiplied by
 };
 
-/// The camera for a depth map of the given size. Kept as it is when its principal point lies in the middle
-/// part of the depth map in at least one direction; else scaled by the ratio of depth map to picture where
-/// that puts the principal point into the middle, else by the nearest power of two. Nothing when no such
-/// factor fits.
+/// The camera for a depth map of the given size. Kept as it is when its principal point lies roughly in the
+/// middle of the depth map in at least one direction; else scaled by the ratio of depth map to picture, or by
+/// the nearest power of two, where that puts the principal point into the middle; else kept when the
+/// principal point lies inside the depth map (a crop), and nothing when it lies outside.
 std::optional<FittedCamera> fitToDepthMap(const Pinhole& camera, const PfmHeader& depth_map,
                                           std::optional<double> depth_per_picture);
 

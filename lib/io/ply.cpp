@@ -43,25 +43,25 @@ class BinaryValues {
       : path_(path),
         bytes_(bytes),
         position_(header.data_begin),
-        swap_(header.encoding == PlyEncoding::kBigEndian) {}
+        swap_(header.encoding == PlyEncoding::BigEndian) {}
 
   double next(PlyType type) {
     switch (type) {
-      case PlyType::kInt8:
+      case PlyType::Int8:
         return read<std::int8_t>();
-      case PlyType::kUint8:
+      case PlyType::Uint8:
         return read<std::uint8_t>();
-      case PlyType::kInt16:
+      case PlyType::Int16:
         return read<std::int16_t>();
-      case PlyType::kUint16:
+      case PlyType::Uint16:
         return read<std::uint16_t>();
-      case PlyType::kInt32:
+      case PlyType::Int32:
         return read<std::int32_t>();
-      case PlyType::kUint32:
+      case PlyType::Uint32:
         return read<std::uint32_t>();
-      case PlyType::kFloat:
+      case PlyType::Float:
         return static_cast<double>(read<float>());
-      case PlyType::kDouble:
+      case PlyType::Double:
         return read<double>();
     }
     return 0;
@@ -144,7 +144,7 @@ VertexLayout layoutOf(const std::filesystem::path& path, const PlyElement& eleme
     auto slot = static_cast<std::size_t>(std::find(kVertexNames.begin(), kVertexNames.end(), p.name) -
                                          kVertexNames.begin());
     const bool is_color = slot >= kColor && slot < kSupport;
-    if (p.count_type || (is_color && p.type != PlyType::kUint8)) slot = kVertexNames.size();
+    if (p.count_type || (is_color && p.type != PlyType::Uint8)) slot = kVertexNames.size();
     layout.slots.push_back(slot);
     layout.has[slot] = true;
   }
@@ -258,7 +258,7 @@ void append(std::string& bytes, const T& value) {
 
 TriangleMesh parsePly(const std::filesystem::path& path, std::string_view bytes) {
   const PlyHeader header = parsePlyHeader(path, bytes);
-  if (header.encoding == PlyEncoding::kAscii) return readElements<TextValues>(path, bytes, header);
+  if (header.encoding == PlyEncoding::Ascii) return readElements<TextValues>(path, bytes, header);
   return readElements<BinaryValues>(path, bytes, header);
 }
 

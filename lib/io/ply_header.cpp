@@ -9,12 +9,12 @@ namespace vdbfuse::io {
 namespace {
 
 constexpr std::pair<std::string_view, PlyType> kTypes[] = {
-    {"char", PlyType::kInt8},     {"int8", PlyType::kInt8},     {"uchar", PlyType::kUint8},
-    {"uint8", PlyType::kUint8},   {"short", PlyType::kInt16},   {"int16", PlyType::kInt16},
-    {"ushort", PlyType::kUint16}, {"uint16", PlyType::kUint16}, {"int", PlyType::kInt32},
-    {"int32", PlyType::kInt32},   {"uint", PlyType::kUint32},   {"uint32", PlyType::kUint32},
-    {"float", PlyType::kFloat},   {"float32", PlyType::kFloat}, {"double", PlyType::kDouble},
-    {"float64", PlyType::kDouble}};
+    {"char", PlyType::Int8},     {"int8", PlyType::Int8},     {"uchar", PlyType::Uint8},
+    {"uint8", PlyType::Uint8},   {"short", PlyType::Int16},   {"int16", PlyType::Int16},
+    {"ushort", PlyType::Uint16}, {"uint16", PlyType::Uint16}, {"int", PlyType::Int32},
+    {"int32", PlyType::Int32},   {"uint", PlyType::Uint32},   {"uint32", PlyType::Uint32},
+    {"float", PlyType::Float},   {"float32", PlyType::Float}, {"double", PlyType::Double},
+    {"float64", PlyType::Double}};
 
 PlyType parseType(TextCursor& cursor, std::string_view word) {
   for (const auto& [name, type] : kTypes) {
@@ -25,9 +25,9 @@ PlyType parseType(TextCursor& cursor, std::string_view word) {
 
 PlyEncoding parseEncoding(TextCursor& cursor) {
   const std::string_view word = cursor.wordOnLine();
-  if (word == "ascii") return PlyEncoding::kAscii;
-  if (word == "binary_little_endian") return PlyEncoding::kLittleEndian;
-  if (word == "binary_big_endian") return PlyEncoding::kBigEndian;
+  if (word == "ascii") return PlyEncoding::Ascii;
+  if (word == "binary_little_endian") return PlyEncoding::LittleEndian;
+  if (word == "binary_big_endian") return PlyEncoding::BigEndian;
   cursor.fail("ascii, binary_little_endian or binary_big_endian", word);
 }
 
@@ -46,8 +46,7 @@ PlyProperty parseProperty(TextCursor& cursor) {
   if (word == "list") {
     word = cursor.wordOnLine();
     property.count_type = parseType(cursor, word);
-    if (*property.count_type >= PlyType::kFloat)
-      cursor.fail("an integer type for the length of a list", word);
+    if (*property.count_type >= PlyType::Float) cursor.fail("an integer type for the length of a list", word);
     word = cursor.wordOnLine();
   }
   property.type = parseType(cursor, word);

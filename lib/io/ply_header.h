@@ -10,8 +10,8 @@
 
 namespace vdbfuse::io {
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
-enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+enum class PlyType { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
+enum class PlyEncoding { Ascii, LittleEndian, BigEndian };
 
 /// Bytes of one value in a binary file.
 std::size_t sizeOf(PlyType type);
@@ -29,7 +29,7 @@ struct PlyElement {
 };
 
 struct PlyHeader {
-  PlyEncoding encoding = PlyEncoding::kAscii;
+  PlyEncoding encoding = PlyEncoding::Ascii;
   std::vector<PlyElement> elements;
   std::size_t data_begin = 0;  ///< byte after the header
 };

@@ -12,43 +12,53 @@ constexpr std::uint64_t kTicksBetweenReports = 1 << 16;
 
 }  // namespace
 
-void LevelQueue::push(std::uint32_t node, std::int32_t level, std::vector<std::uint32_t>& links) {
-  if (static_cast<std::size_t>(level) >= tops_.size()) tops_.resize(2 * level + 1, kEndOfList);
-  lowest_ = size_ == 0 ? level : std::min(lowest_, level);
-  highest_ = size_ == 0 ? level : std::max(highest_, level);
-  links[node] = std::exchange(tops_[level], node);
+void LevelQueue::push(Item item, std::int32_t level) {
+  if (static_cast<std::size_t>(level) >= tops_.size()) tops_.resize(2 * level + 1, kEnd);
+  if (size_ == 0) {
+    links_.clear();
+    lowest_ = highest_ = level;
+  }
+  lowest_ = std::min(lowest_, level);
+  highest_ = std::max(highest_, level);
+  links_.push_back({item, std::exchange(tops_[level], static_cast<std::uint32_t>(links_.size()))});
   ++size_;
 }
 
-std::uint32_t LevelQueue::popLowest(std::vector<std::uint32_t>& links) {
-  while (tops_[lowest_] == kEndOfList) ++lowest_;
-  return pop(lowest_, links);
+LevelQueue::Item LevelQueue::popLowest() {
+  while (tops_[lowest_] == kEnd) ++lowest_;
+  return pop(lowest_);
 }
 
-std::uint32_t LevelQueue::popHighest(std::vector<std::uint32_t>& links) {
-  while (tops_[highest_] == kEndOfList) --highest_;
-  return pop(highest_, links);
+LevelQueue::Item LevelQueue::popHighest() {
+  while (tops_[highest_] == kEnd) --highest_;
+  return pop(highest_);
 }
 
-std::uint32_t LevelQueue::pop(std::int32_t level, std::vector<std::uint32_t>& links) {
-  const std::uint32_t node = tops_[level];
-  tops_[level] = std::exchange(links[node], kNotQueued);
+LevelQueue::Item LevelQueue::pop(std::int32_t level) {
+  const Link& link = links_[tops_[level]];
+  tops_[level] = link.next;
+  level_ = level;
   --size_;
-  return node;
+  return link.item;
+}
+
+std::size_t LevelQueue::bytes() const {
+  return tops_.capacity() * sizeof(tops_[0]) + links_.capacity() * sizeof(links_[0]);
 }
 
 Forests::Forests(const Network& network, const Progress& progress)
     : network_(network),
       progress_(progress),
       residual_(network.arcCount()),
-      nodes_(network.nodeCount()),
-      links_(network.nodeCount(), kNotQueued) {
+      excess_(network.nodeCount()),
+      parent_(network.nodeCount(), kRoot),
+      level_(network.nodeCount(), 0) {
   for (std::uint32_t arc = 0; arc < network.arcCount(); ++arc) residual_[arc] = network.capacity(arc);
   for (std::uint32_t node = 0; node < network.nodeCount(); ++node) {
-    nodes_[node] = {network.terminal(node), kRoot, 0};
-    if (nodes_[node].excess != 0) ++in_forests_;
-    if (nodes_[node].excess > 0) place<Tree::Source>(node, kRoot, 1);
-    if (nodes_[node].excess < 0) place<Tree::Sink>(node, kRoot, 1);
+    excess_[node] = network.terminal(node);
+    if (excess_[node] != 0) ++in_forests_;
+    if (excess_[node] > 0) place<Tree::Source>(node, kRoot, 1);
+    if (excess_[node] < 0) place<Tree::Sink>(node, kRoot, 1);
   }
 }
 
@@ -72,8 +82,8 @@ void Forests::exhaust() {
 /// Gives the node its place in the forest; on the deepest levels that makes it one to scan.
 template <Tree T>
 void Forests::place(std::uint32_t node, std::uint32_t parent, std::int32_t depth) {
-  nodes_[node].parent = parent;
-  nodes_[node].level = levelAt<T>(depth);
+  parent_[node] = parent;
+  level_[node] = levelAt<T>(depth);
   Frontier& deepest = frontier<T>();
   if (depth == deepest.level) {
     deepest.nodes.push_back(node);
@@ -92,7 +102,7 @@ void Forests::growLevel() {
   ++deepest.level;
   for (std::size_t i = 0; i < deepest.scanning.size(); ++i) {
     const std::uint32_t node = deepest.scanning[i];
-    if (!isIn<T>(nodes_[node]) || depth<T>(nodes_[node]) != deepest.level - 1) continue;
+    if (!isIn<T>(node) || depth<T>(node) != deepest.level - 1) continue;
     scan<T>(node);
     drain();
   }
@@ -107,13 +117,13 @@ void Forests::scan(std::uint32_t node) {
   const std::uint32_t end = network_.firstArc(node + 1);
   for (std::uint32_t arc = network_.firstArc(node); arc < end; ++arc) {
     const std::uint32_t neighbour = network_.head(arc);
-    if (isIn<T>(nodes_[neighbour]) || room<opposite(T)>(arc) == 0) continue;
-    if (nodes_[neighbour].level != 0) {
+    if (isIn<T>(neighbour) || room<opposite(T)>(arc) == 0) continue;
+    if (level_[neighbour] != 0) {
       if (T == Tree::Source) fillBridge(arc, node);
       if (T == Tree::Sink) fillBridge(network_.mate(arc), neighbour);
       if (room<opposite(T)>(arc) == 0) continue;
     }
-    if (!isIn<T>(nodes_[node]) || depth<T>(nodes_[node]) != next_depth - 1) return;
+    if (!isIn<T>(node) || depth<T>(node) != next_depth - 1) return;
     ++in_forests_;
     place<T>(neighbour, network_.mate(arc), next_depth);
   }
@@ -123,35 +133,36 @@ void Forests::scan(std::uint32_t node) {
 /// sinks to a level that is yet to be scanned.
 void Forests::fillBridge(std::uint32_t arc, std::uint32_t tail) {
   ++statistics_.bridges;
-  while (residual_[arc] > 0 && isIn<Tree::Source>(nodes_[tail])) {
+  while (residual_[arc] > 0 && isIn<Tree::Source>(tail)) {
     const auto amount = static_cast<std::uint32_t>(std::min<std::int64_t>(residual_[arc], supply(tail)));
     pull(tail, amount);
     push(arc, amount);
     arrive(network_.head(arc), amount);
-    while (!orphans_.empty()) adopt<Tree::Source>(orphans_.popLowest(links_));
+    mend<Tree::Source>();
   }
 }
 
 /// What the tree path from its root can bring to the node.
 std::int64_t Forests::supply(std::uint32_t node) const {
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
-  while (nodes_[node].parent != kRoot) {
-    least = std::min<std::int64_t>(least, room<Tree::Source>(nodes_[node].parent));
-    node = network_.head(nodes_[node].parent);
+  while (parent_[node] != kRoot) {
+    least = std::min<std::int64_t>(least, room<Tree::Source>(parent_[node]));
+    node = network_.head(parent_[node]);
   }
-  return std::min(least, nodes_[node].excess);
+  return std::min(least, excess_[node]);
 }
 
 void Forests::pull(std::uint32_t node, std::uint32_t amount) {
-  while (nodes_[node].parent != kRoot) {
+  while (parent_[node] != kRoot) {
     ++statistics_.pushes;
-    const std::uint32_t arc = network_.mate(nodes_[node].parent);
+    const std::uint32_t parent = network_.head(parent_[node]);
+    const std::uint32_t arc = network_.mate(parent_[node]);
     push(arc, amount);
     if (residual_[arc] == 0) orphan<Tree::Source>(node);
-    node = network_.head(nodes_[node].parent);
+    node = parent;
   }
-  nodes_[node].excess -= amount;
-  if (nodes_[node].excess == 0) orphan<Tree::Source>(node);
+  excess_[node] -= amount;
+  if (excess_[node] == 0) orphan<Tree::Source>(node);
 }
 
 void Forests::push(std::uint32_t arc, std::uint32_t amount) {
@@ -160,82 +171,110 @@ void Forests::push(std::uint32_t arc, std::uint32_t amount) {
 }
 
 /// A child pushes on all it has; a root is used up when it has no deficit left.
-bool Forests::mustPush(const Node& node) { return node.parent == kRoot ? node.excess >= 0 : node.excess > 0; }
+bool Forests::mustPush(std::uint32_t node) const {
+  return parent_[node] == kRoot ? excess_[node] >= 0 : excess_[node] > 0;
+}
 
 void Forests::arrive(std::uint32_t node, std::uint32_t amount) {
-  Node& state = nodes_[node];
-  const bool waits_already = mustPush(state);
-  state.excess += amount;
-  if (!waits_already && mustPush(state)) loads_.push(node, depth<Tree::Sink>(state), links_);
+  const bool waits_already = mustPush(node);
+  excess_[node] += amount;
+  if (!waits_already && mustPush(node)) loads_.push({node, kNoArc}, depth<Tree::Sink>(node));
 }
 
 /// Pushes all excess in the sink forest rootwards and mends the forest, until no node of it has an excess.
 void Forests::drain() {
   while (!loads_.empty()) {
-    while (!loads_.empty()) pushRootwards(loads_.popHighest(links_));
-    while (!orphans_.empty()) adopt<Tree::Sink>(orphans_.popLowest(links_));
-    for (const std::uint32_t node : loaded_orphans_) {
-      const Node& state = nodes_[node];
-      if (isIn<Tree::Sink>(state) && !isQueued(node)) loads_.push(node, depth<Tree::Sink>(state), links_);
+    while (!loads_.empty()) pushRootwards(loads_.popHighest().node);
+    mend<Tree::Sink>();
+    for (const std::uint32_t node : loaded_) {
+      if (isIn<Tree::Sink>(node)) loads_.push({node, kNoArc}, depth<Tree::Sink>(node));
     }
-    loaded_orphans_.clear();
+    loaded_.clear();
   }
 }
 
 void Forests::pushRootwards(std::uint32_t node) {
-  Node& state = nodes_[node];
-  if (state.parent == kRoot) return orphan<Tree::Sink>(node);
+  if (parent_[node] == kOrphan || !mustPush(node)) return;  // it waited twice
+  if (parent_[node] == kRoot) return orphan<Tree::Sink>(node);
   ++statistics_.pushes;
   const auto amount =
-      static_cast<std::uint32_t>(std::min<std::int64_t>(state.excess, residual_[state.parent]));
-  push(state.parent, amount);
-  state.excess -= amount;
-  arrive(network_.head(state.parent), amount);
-  if (residual_[state.parent] == 0) orphan<Tree::Sink>(node);
+      static_cast<std::uint32_t>(std::min<std::int64_t>(excess_[node], residual_[parent_[node]]));
+  push(parent_[node], amount);
+  excess_[node] -= amount;
+  arrive(network_.head(parent_[node]), amount);
+  if (residual_[parent_[node]] == 0) orphan<Tree::Sink>(node);
 }
 
 template <Tree T>
 void Forests::orphan(std::uint32_t node) {
-  orphans_.push(node, depth<T>(nodes_[node]), links_);
+  if (T == Tree::Sink && excess_[node] > 0) loaded_.push_back(node);
+  orphans_.push({node, std::exchange(parent_[node], kOrphan)}, depth<T>(node));
 }
 
-/// Finds the orphan another parent. All shallower nodes have theirs, so that its level can only stay or sink;
-/// if it sinks, its children are no longer one level below it and must choose again.
+/// Gives every orphan the nearest parent there is, and levels that are exact again, at a cost that depends on
+/// the number of nodes that cannot keep their level and on nothing else. First, from the root downwards, a
+/// node keeps its level if another parent allows it and is detached if not, which makes orphans of its
+/// children. Then the detached nodes join again in order of their new levels, or leave the forest. (Deciding
+/// node by node would let the nodes of a cut-off subtree adopt each other and sink one level at a time.)
 template <Tree T>
-void Forests::adopt(std::uint32_t node) {
-  tick();
-  const std::uint32_t arc = nearestParent<T>(node);
-  if (arc == kRoot) return release<T>(node);
-  ++statistics_.adoptions;
-  const std::int32_t new_depth = depth<T>(nodes_[network_.head(arc)]) + 1;
-  if (new_depth == depth<T>(nodes_[node])) {
-    nodes_[node].parent = arc;
-  } else {
-    orphanChildren<T>(node);
-    place<T>(node, arc, new_depth);
+void Forests::mend() {
+  while (!orphans_.empty()) {
+    const LevelQueue::Item orphan = orphans_.popLowest();
+    keepOrDetach<T>(orphan.node, orphan.arc);
   }
-  if (T == Tree::Sink && nodes_[node].excess > 0) loaded_orphans_.push_back(node);
+  for (const std::uint32_t node : detached_) {
+    const std::uint32_t arc = nearestParent<T>(node);
+    if (arc != kNoArc) orphans_.push({node, arc}, depth<T>(network_.head(arc)) + 1);
+  }
+  while (!orphans_.empty()) {
+    const LevelQueue::Item orphan = orphans_.popLowest();
+    if (level_[orphan.node] == 0) reattach<T>(orphan.node, orphan.arc, orphans_.level());
+  }
+  for (const std::uint32_t node : detached_) {
+    if (level_[node] == 0) release<T>(node);
+  }
+  detached_.clear();
 }
 
-/// The arc to the shallowest node with room that is above the forest's deepest level, or kRoot. The search
-/// starts after the old parent, so that a node with many arcs does not look at the same filled ones each
-/// time.
 template <Tree T>
-std::uint32_t Forests::nearestParent(std::uint32_t node) const {
-  const std::int32_t wanted = depth<T>(nodes_[node]) - 1;
+void Forests::keepOrDetach(std::uint32_t node, std::uint32_t old_parent) {
+  tick();
+  const std::uint32_t arc = parentAt<T>(depth<T>(node) - 1, node, old_parent);
+  if (arc != kNoArc) {
+    ++statistics_.adoptions;
+    parent_[node] = arc;
+    return;
+  }
+  orphanChildren<T>(node);
+  level_[node] = 0;
+  detached_.push_back(node);
+}
+
+/// An arc with room to a node at the wanted depth, or kNoArc. The search starts after the old parent, so that
+/// a node with many arcs does not look at the same filled ones each time.
+template <Tree T>
+std::uint32_t Forests::parentAt(std::int32_t wanted, std::uint32_t node, std::uint32_t old_parent) const {
+  if (wanted == 0) return kNoArc;
   const std::uint32_t begin = network_.firstArc(node);
   const std::uint32_t end = network_.firstArc(node + 1);
-  const std::uint32_t old = nodes_[node].parent;
-  std::uint32_t arc = old == kRoot ? end : old + 1;
-  std::uint32_t nearest = kRoot;
+  std::uint32_t arc = old_parent == kRoot ? begin : old_parent;
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (++arc >= end) arc = begin;
+    if (level_[network_.head(arc)] == levelAt<T>(wanted) && room<T>(arc) > 0) return arc;
+  }
+  return kNoArc;
+}
+
+/// The arc with room to the shallowest node above the forest's deepest level, or kNoArc.
+template <Tree T>
+std::uint32_t Forests::nearestParent(std::uint32_t node) const {
+  std::uint32_t nearest = kNoArc;
   std::int32_t least = frontiers_[static_cast<std::size_t>(T)].level;
-  for (std::uint32_t i = begin; i < end; ++i, ++arc) {
-    if (arc >= end) arc = begin;
-    const Node& other = nodes_[network_.head(arc)];
-    if (!isIn<T>(other) || depth<T>(other) >= least || room<T>(arc) == 0) continue;
-    least = depth<T>(other);
+  const std::uint32_t end = network_.firstArc(node + 1);
+  for (std::uint32_t arc = network_.firstArc(node); arc < end; ++arc) {
+    if (!isIn<T>(network_.head(arc)) || depth<T>(network_.head(arc)) >= least || room<T>(arc) == 0) continue;
+    least = depth<T>(network_.head(arc));
     nearest = arc;
-    if (least == wanted) break;
   }
   return nearest;
 }
@@ -245,8 +284,20 @@ void Forests::orphanChildren(std::uint32_t node) {
   const std::uint32_t end = network_.firstArc(node + 1);
   for (std::uint32_t arc = network_.firstArc(node); arc < end; ++arc) {
     const std::uint32_t child = network_.head(arc);
-    const Node& state = nodes_[child];
-    if (isIn<T>(state) && state.parent == network_.mate(arc) && !isQueued(child)) orphan<T>(child);
+    if (isIn<T>(child) && parent_[child] == network_.mate(arc)) orphan<T>(child);
+  }
+}
+
+/// A detached node joins at its new level and offers itself to its detached neighbours.
+template <Tree T>
+void Forests::reattach(std::uint32_t node, std::uint32_t parent, std::int32_t depth) {
+  ++statistics_.adoptions;
+  place<T>(node, parent, depth);
+  if (depth == frontier<T>().level) return;
+  const std::uint32_t end = network_.firstArc(node + 1);
+  for (std::uint32_t arc = network_.firstArc(node); arc < end; ++arc) {
+    if (level_[network_.head(arc)] != 0 || room<opposite(T)>(arc) == 0) continue;
+    orphans_.push({network_.head(arc), network_.mate(arc)}, depth + 1);
   }
 }
 
@@ -255,32 +306,29 @@ void Forests::orphanChildren(std::uint32_t node) {
 template <Tree T>
 void Forests::release(std::uint32_t node) {
   ++statistics_.releases;
-  orphanChildren<T>(node);
-  if (nodes_[node].excess > 0) {
+  if (excess_[node] > 0) {
     place<Tree::Source>(node, kRoot, frontier<Tree::Source>().level);
   } else {
     --in_forests_;
-    nodes_[node].level = 0;
   }
 }
 
 void Forests::tick() {
   if (++ticks_ % kTicksBetweenReports != 0) return;
-  progress_.report("minimum cut", static_cast<double>(in_forests_) / static_cast<double>(nodes_.size()));
+  progress_.report("minimum cut", static_cast<double>(in_forests_) / static_cast<double>(level_.size()));
 }
 
 MinCut Forests::takeResult(CutTies ties) {
   MinCut cut;
   cut.statistics = statistics_;
   cut.residual = std::move(residual_);
-  cut.sides.reserve(nodes_.size());
-  cut.excess.reserve(nodes_.size());
-  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
-    const Node& state = nodes_[node];
-    const bool source = ties == CutTies::SmallestSource ? state.level > 0 : state.level >= 0;
+  cut.sides.reserve(level_.size());
+  cut.excess.reserve(level_.size());
+  for (std::uint32_t node = 0; node < level_.size(); ++node) {
+    const bool source = ties == CutTies::SmallestSource ? level_[node] > 0 : level_[node] >= 0;
     cut.sides.push_back(source ? CutSide::Source : CutSide::Sink);
-    cut.excess.push_back(state.excess);
-    cut.flow += std::max<std::int64_t>(network_.terminal(node), 0) - std::max<std::int64_t>(state.excess, 0);
+    cut.excess.push_back(excess_[node]);
+    cut.flow += std::max<std::int64_t>(network_.terminal(node), 0) - std::max<std::int64_t>(excess_[node], 0);
   }
   return cut;
 }

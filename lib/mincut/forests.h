@@ -26,27 +26,37 @@ enum class Tree : std::uint8_t { Source, Sink };
 
 constexpr Tree opposite(Tree tree) { return tree == Tree::Source ? Tree::Sink : Tree::Source; }
 
-constexpr std::uint32_t kNotQueued = 0xffffffff;
-constexpr std::uint32_t kEndOfList = 0xfffffffe;
-
-/// Nodes waiting to be processed, by level; a list in linked form, whose links are shared by all queues, for
-/// a node waits in at most one.
+/// Nodes waiting to be processed, by level, each with an arc that goes with it. A node may wait more than
+/// once.
 class LevelQueue {
  public:
+  struct Item {
+    std::uint32_t node;
+    std::uint32_t arc;
+  };
   bool empty() const { return size_ == 0; }
-  std::int32_t lowest() const { return lowest_; }
-  std::int32_t highest() const { return highest_; }
-  void push(std::uint32_t node, std::int32_t level, std::vector<std::uint32_t>& links);
-  /// Takes a node off the lowest (highest) level. REQUIRES: not empty.
-  std::uint32_t popLowest(std::vector<std::uint32_t>& links);
-  std::uint32_t popHighest(std::vector<std::uint32_t>& links);
+  void push(Item item, std::int32_t level);
+  /// Takes an item off the lowest (highest) level. REQUIRES: not empty.
+  Item popLowest();
+  Item popHighest();
+  /// Level of the item that was taken last.
+  std::int32_t level() const { return level_; }
+  std::size_t bytes() const;
 
  private:
-  std::uint32_t pop(std::int32_t level, std::vector<std::uint32_t>& links);
-  std::vector<std::uint32_t> tops_;
+  struct Link {
+    Item item;
+    std::uint32_t next;
+  };
+  static constexpr std::uint32_t kEnd = 0xffffffff;
+  Item pop(std::int32_t level);
+
+  std::vector<std::uint32_t> tops_;  ///< by level: first of its links, or kEnd
+  std::vector<Link> links_;          ///< emptied whenever the queue is
   std::size_t size_ = 0;
   std::int32_t lowest_ = 0;
   std::int32_t highest_ = 0;
+  std::int32_t level_ = 0;
 };
 
 class Forests {
@@ -64,11 +74,6 @@ class Forests {
   MinCut takeResult(CutTies ties);
 
  private:
-  struct Node {
-    std::int64_t excess;   ///< terminal + inflow − outflow
-    std::uint32_t parent;  ///< arc to the parent, kRoot, or anything where level == 0
-    std::int32_t level;    ///< > 0: source forest, < 0: sink forest, 0: neither
-  };
   /// Nodes on a forest's deepest level, whose arcs out of the forest nobody has looked at yet.
   struct Frontier {
     std::vector<std::uint32_t> nodes;     ///< may hold nodes that have left the level since
@@ -78,18 +83,20 @@ class Forests {
   };
 
   static constexpr std::uint32_t kRoot = 0xffffffff;
+  static constexpr std::uint32_t kOrphan = 0xfffffffe;
+  static constexpr std::uint32_t kNoArc = 0xfffffffd;
 
-  template <Tree T>
-  bool isIn(const Node& node) const {
-    return T == Tree::Source ? node.level > 0 : node.level < 0;
-  }
-  template <Tree T>
-  static std::int32_t depth(const Node& node) {
-    return T == Tree::Source ? node.level : -node.level;
-  }
   template <Tree T>
   static std::int32_t levelAt(std::int32_t depth) {
     return T == Tree::Source ? depth : -depth;
+  }
+  template <Tree T>
+  std::int32_t depth(std::uint32_t node) const {
+    return levelAt<T>(level_[node]);
+  }
+  template <Tree T>
+  bool isIn(std::uint32_t node) const {
+    return depth<T>(node) > 0;
   }
   /// What could still be pushed along `arc` (against it, in the source forest) on the way to the root.
   template <Tree T>
@@ -100,7 +107,6 @@ class Forests {
   Frontier& frontier() {
     return frontiers_[static_cast<std::size_t>(T)];
   }
-  bool isQueued(std::uint32_t node) const { return links_[node] != kNotQueued; }
 
   template <Tree T>
   void place(std::uint32_t node, std::uint32_t parent, std::int32_t depth);
@@ -112,18 +118,24 @@ class Forests {
   std::int64_t supply(std::uint32_t node) const;
   void pull(std::uint32_t node, std::uint32_t amount);
   void push(std::uint32_t arc, std::uint32_t amount);
-  static bool mustPush(const Node& node);
+  bool mustPush(std::uint32_t node) const;
   void arrive(std::uint32_t node, std::uint32_t amount);
   void drain();
   void pushRootwards(std::uint32_t node);
   template <Tree T>
   void orphan(std::uint32_t node);
   template <Tree T>
-  void adopt(std::uint32_t node);
+  void mend();
+  template <Tree T>
+  void keepOrDetach(std::uint32_t node, std::uint32_t old_parent);
+  template <Tree T>
+  std::uint32_t parentAt(std::int32_t wanted, std::uint32_t node, std::uint32_t old_parent) const;
   template <Tree T>
   std::uint32_t nearestParent(std::uint32_t node) const;
   template <Tree T>
   void orphanChildren(std::uint32_t node);
+  template <Tree T>
+  void reattach(std::uint32_t node, std::uint32_t parent, std::int32_t depth);
   template <Tree T>
   void release(std::uint32_t node);
   void tick();
@@ -131,12 +143,15 @@ class Forests {
   const Network& network_;
   const Progress& progress_;
   std::vector<std::uint32_t> residual_;
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> links_;
+  std::vector<std::int64_t> excess_;  ///< terminal + inflow − outflow
+  std::vector<std::uint32_t>
+      parent_;  ///< arc to the parent, kRoot or kOrphan; means nothing where the level is 0
+  std::vector<std::int32_t> level_;  ///< > 0: source forest, < 0: sink forest, 0: neither
   std::array<Frontier, 2> frontiers_;
   LevelQueue loads_;
   LevelQueue orphans_;
-  std::vector<std::uint32_t> loaded_orphans_;
+  std::vector<std::uint32_t> detached_;
+  std::vector<std::uint32_t> loaded_;
   SolveStatistics statistics_;
   std::uint64_t ticks_ = 0;
   std::uint64_t in_forests_ = 0;

@@ -185,6 +185,8 @@ TEST(Mvsnet, CameraIsFittedToTheDepthMapOnlyWhereItClearlyDoesNotFit) {
   // Cropped at the right: still inside, and in the middle of the rows.
   EXPECT_EQ(fitToDepthMap(camera, {100, 120}, {})->scale, 1.0);
   EXPECT_EQ(fitToDepthMap(camera, {640, 480}, {})->pinhole, (Pinhole{640, 480, 400, 400, 319.5, 239.5, {}}));
+  // A crop that no scale explains stays what it is as long as the principal point is in it.
+  EXPECT_EQ(fitToDepthMap({0, 0, 100, 100, 20, 50, {}}, {160, 300}, {})->scale, 1.0);
   EXPECT_FALSE(fitToDepthMap(camera, {40, 480}, {}));
   EXPECT_FALSE(fitToDepthMap({0, 0, 100, 100, -300, -200, {}}, {160, 120}, {}));
 }

@@ -12,8 +12,11 @@ namespace vdbfuse::tool {
 /// Set by the subcommand that was chosen; main() runs it after all options have been parsed.
 using Action = std::function<void()>;
 
+void addFormats(CLI::App& app, Action& action);
+void addInfo(CLI::App& app, Action& action);
 void addFuse(CLI::App& app, Action& action);
 void addRender(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
+void addEvaluate(CLI::App& app, Action& action);
 
 }  // namespace vdbfuse::tool

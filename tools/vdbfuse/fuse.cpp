@@ -32,7 +32,7 @@ const std::map<std::string, NoReturn> kNoReturns = {
 const std::map<std::string, DepthKind> kDepthKinds = {{"z", DepthKind::Z},
                                                       {"range", DepthKind::Range},
                                                       {"disparity", DepthKind::Disparity},
-                                                      {"inverse", DepthKind::InverseDepth}};
+                                                      {"inverse", DepthKind::Inverse}};
 
 struct Request {
   fs::path input, output, grids, json;

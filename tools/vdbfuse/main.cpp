@@ -34,9 +34,12 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "vdbfuse " VDBFUSE_VERSION);
   app.require_subcommand(1);
   vdbfuse::tool::Action action;
+  vdbfuse::tool::addFormats(app, action);
+  vdbfuse::tool::addInfo(app, action);
   vdbfuse::tool::addFuse(app, action);
   vdbfuse::tool::addRender(app, action);
   vdbfuse::tool::addSynth(app, action);
+  vdbfuse::tool::addEvaluate(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

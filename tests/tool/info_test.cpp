@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "io/temporary_folder.h"
+#include "tool/run_tool.h"
+#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/io/mvsnet.h"
+
+namespace vdbfuse {
+namespace {
+
+using test::quoted;
+using test::readText;
+using test::runTool;
+using test::TemporaryFolder;
+using test::ToolResult;
+using test::writeText;
+using testing::HasSubstr;
+
+// Two cameras a unit apart, both with a wall two units ahead.
+void writeScan(const std::filesystem::path& folder) {
+  MvsnetWriter writer(folder);
+  for (int i = 0; i < 2; ++i) {
+    View view;
+    view.projection = Pinhole{8, 6, 8, 8, 3.5, 2.5, {}};
+    view.world_from_camera.translation() = Eigen::Vector3d(i, 0, 0);
+    view.map.depth = Image<float>(8, 6, 2.0f);
+    for (int y = 0; y < 6; ++y) view.map.depth(0, y) = kInvalidDepth;
+    writer.add(view);
+  }
+}
+
+TEST(Info, TellsWhatIsInADataSet) {
+  const TemporaryFolder folder;
+  writeScan(folder / "scan");
+  const ToolResult run = runTool("info " + quoted(folder / "scan"));
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(run.out,
+            "format      mvsnet\n"
+            "views       2, 8x6 pixels\n"
+            "coverage    87.5 % of the pixels have a depth\n"
+            "depth       2 to 2, median 2 (smallest 2, largest 2)\n"
+            "confidence  none\n"
+            "colour      0 views\n"
+            "points      -0.625,-0.625,2 to 1.875,0.625,2\n"
+            "cameras     0,0,0 to 1,0,0\n");
+}
+
+TEST(Info, JsonHoldsTheSame) {
+  const TemporaryFolder folder;
+  writeScan(folder / "scan");
+  const std::filesystem::path file = folder / "info.json";
+  const std::string arguments = "info " + quoted(folder / "scan") + " --json " + quoted(file);
+  EXPECT_EQ(runTool(arguments + " --depth-scale 3").exit_code, 0);
+  const nlohmann::json json = nlohmann::json::parse(readText(file));
+  EXPECT_EQ(json["command"], "info");
+  EXPECT_EQ(json["input"], nlohmann::json({{"views", 2}, {"width", 8}, {"height", 6}, {"format", "mvsnet"}}));
+  EXPECT_EQ(json["options"]["depth_scale"], 3.0);
+  EXPECT_EQ(json["depth"]["median"], 6.0);
+  EXPECT_EQ(json["coverage"], 0.875);
+  EXPECT_EQ(json["confidence"], nullptr);
+  EXPECT_EQ(json["cameras"]["max"], nlohmann::json({1.0, 0.0, 0.0}));
+  // What is there stays there unless told otherwise.
+  const ToolResult again = runTool(arguments);
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_EQ(again.err, "vdbfuse: " + file.string() + ": exists already; --overwrite replaces it\n");
+  EXPECT_EQ(runTool(arguments + " --overwrite").exit_code, 0);
+  EXPECT_EQ(nlohmann::json::parse(readText(file))["depth"]["median"], 2.0);
+}
+
+TEST(Info, BadInputIsOneLineAndLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  writeScan(folder / "scan");
+  writeText(folder / "scan/depth_est/00000001.pfm", "Pf\n8 6\n-1\n");
+  const ToolResult run = runTool("info " + quoted(folder / "scan") + " --json " + quoted(folder / "info.json"));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.err, "vdbfuse: " + (folder / "scan/depth_est/00000001.pfm").string() +
+                           ": byte 10: expected 202 bytes for 8x6 pixels, found the end of the file\n");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+TEST(Info, WrongUsageHasAnExitCodeOfItsOwn) {
+  EXPECT_EQ(runTool("info").exit_code, 2);
+  EXPECT_EQ(runTool("info x --depth-kind wrong").exit_code, 2);
+  EXPECT_EQ(runTool("info x --depth-scale -1").exit_code, 2);
+  EXPECT_EQ(runTool("info x --format wrong").exit_code, 2);
+  EXPECT_EQ(runTool("info --help").exit_code, 0);
+}
+
+TEST(Formats, AreAllListedWithTheirLayout) {
+  const ToolResult run = runTool("formats");
+  EXPECT_EQ(run.exit_code, 0);
+  for (const DepthSetFormat& format : depthSetFormats()) {
+    const std::string first_line(format.layout.substr(0, format.layout.find('\n')));
+    EXPECT_THAT(run.out, HasSubstr(std::string(format.name) + ": " + std::string(format.description)));
+    EXPECT_THAT(run.out, HasSubstr("    " + first_line + "\n"));
+  }
+}
+
+}  // namespace
+}  // namespace vdbfuse

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// vdbfuse info: what is in a data set.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "json_file.h"
+#include "read_options.h"
+#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/sensor/summary.h"
+
+namespace vdbfuse::tool {
+namespace {
+
+struct InfoOptions {
+  std::filesystem::path input;
+  std::filesystem::path json;
+  bool overwrite = false;
+  ReadOptions read;
+};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return text;
+}
+
+std::string sizesOf(const ViewSequence& views) {
+  std::set<std::pair<int, int>> sizes;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    sizes.emplace(imageWidth(views.header(i).projection), imageHeight(views.header(i).projection));
+  const auto text = [](const std::pair<int, int>& size) {
+    return std::to_string(size.first) + "x" + std::to_string(size.second);
+  };
+  if (sizes.size() == 1) return text(*sizes.begin());
+  return text(*sizes.begin()) + " to " + text(*sizes.rbegin()) + ", " + std::to_string(sizes.size()) +
+         " sizes";
+}
+
+std::string text(const std::optional<Spread>& spread) {
+  if (!spread) return "none";
+  return number(spread->low) + " to " + number(spread->high) + ", median " + number(spread->median) +
+         " (smallest " + number(spread->smallest) + ", largest " + number(spread->largest) + ")";
+}
+
+std::string text(const Box& box) {
+  if (box.isEmpty()) return "none";
+  const auto point = [](const Eigen::Vector3d& p) {
+    return number(p.x()) + "," + number(p.y()) + "," + number(p.z());
+  };
+  return point(box.min()) + " to " + point(box.max());
+}
+
+void print(const DepthSet& set, const ViewsSummary& summary) {
+  std::printf("format      %s\n", set.format.c_str());
+  std::printf("views       %zu, %s pixels\n", set.views.size(), sizesOf(set.views).c_str());
+  std::printf("coverage    %.1f %% of the pixels have a depth\n", 100.0 * summary.coverage());
+  std::printf("depth       %s\n", text(summary.depth).c_str());
+  std::printf("confidence  %s\n", text(summary.confidence).c_str());
+  std::printf("colour      %zu views\n", summary.views_with_color);
+  std::printf("points      %s\n", text(summary.points).c_str());
+  std::printf("cameras     %s\n", text(summary.cameras).c_str());
+  for (const std::string& note : set.notes) std::printf("note        %s\n", note.c_str());
+}
+
+Json jsonOf(const std::optional<Spread>& spread) {
+  if (!spread) return nullptr;
+  return {{"smallest", spread->smallest},
+          {"low", spread->low},
+          {"median", spread->median},
+          {"high", spread->high},
+          {"largest", spread->largest}};
+}
+
+Json jsonOf(const Box& box) {
+  if (box.isEmpty()) return nullptr;
+  const auto point = [](const Eigen::Vector3d& p) { return Json{p.x(), p.y(), p.z()}; };
+  return {{"min", point(box.min())}, {"max", point(box.max())}};
+}
+
+Json jsonOf(const InfoOptions& options) {
+  Json json;
+  json["input"] = options.input.string();
+  json["format"] = options.read.format.empty() ? Json(nullptr) : Json(options.read.format);
+  json["depth_scale"] = options.read.depth_scale ? Json(*options.read.depth_scale) : Json(nullptr);
+  json["depth_kind"] = options.read.depth_kind ? Json(nameOf(*options.read.depth_kind)) : Json(nullptr);
+  json["baseline"] = options.read.baseline ? Json(*options.read.baseline) : Json(nullptr);
+  json["min_depth"] = options.read.min_depth;
+  json["max_depth"] = std::isfinite(options.read.max_depth) ? Json(options.read.max_depth) : Json(nullptr);
+  return json;
+}
+
+Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary& summary) {
+  Json json = tool::jsonOf("info");
+  json["options"] = jsonOf(options);
+  const Projection& first = set.views.header(0).projection;
+  json["input"] = {{"views", set.views.size()},
+                   {"width", imageWidth(first)},
+                   {"height", imageHeight(first)},
+                   {"format", set.format}};
+  json["coverage"] = summary.coverage();
+  json["depth"] = jsonOf(summary.depth);
+  json["confidence"] = jsonOf(summary.confidence);
+  json["views_with_confidence"] = summary.views_with_confidence;
+  json["views_with_color"] = summary.views_with_color;
+  json["points"] = jsonOf(summary.points);
+  json["cameras"] = jsonOf(summary.cameras);
+  json["notes"] = set.notes;
+  return json;
+}
+
+void run(const InfoOptions& options) {
+  if (!options.json.empty() && !options.overwrite) refuseExisting(options.json);
+  const DepthSet set = readDepthSet(options.input, options.read);
+  const ViewsSummary summary = summarise(set.views);
+  if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary));
+  print(set, summary);
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "info",
+      "What is in a data set of depth maps.\n\nExample: vdbfuse info scan/\n\n"
+      "Ranges and boxes leave out the 0.2 % at each end, so that a few wild depths do not count.");
+  const auto options = std::make_shared<InfoOptions>();
+  command->add_option("INPUT", options->input, "Folder of the data set")->required();
+  command->add_option("--json", options->json, "Write the same as JSON to this file");
+  command->add_flag("--overwrite", options->overwrite, "Replace an existing output");
+  addReadOptions(*command, options->read);
+  command->callback([&action, options] { action = [options] { run(*options); }; });
+}
+
+}  // namespace vdbfuse::tool
