@@ -56,6 +56,8 @@ void checkAfterReading(const std::filesystem::path& path, const TriangleMesh& me
 
 }  // namespace
 
+void requireMeshFormat(const std::filesystem::path& path) { formatOf(path); }
+
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   const Format& format = formatOf(path);
   checkBeforeWriting(mesh);
