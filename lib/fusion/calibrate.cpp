@@ -23,9 +23,11 @@ constexpr std::array kAngleBinsDeg = {2.0, 8.0, 20.0, 40.0, 60.0, 75.0};
 constexpr std::size_t kEnoughPairs = 400;
 // Residuals beyond this share of the depth are not noise; what lies below is modelled.
 constexpr double kLargestResidual = 0.03;
+// Pairs that both look along the surface say little of the noise along their rays.
+constexpr double kLeastCosines = 0.3;
 
 struct Residual {
-  double along_normal;  // |distance| to the other view's surface
+  double scale;  // |distance| along the normal over √(cos² + cos²): estimates the noise along the rays
   double depth;
   std::size_t angle_bin;
 };
@@ -100,7 +102,9 @@ class ResidualCollector {
     const double angle = std::acos(std::clamp(ray.dot(other_ray), -1.0, 1.0)) * 180 / std::numbers::pi;
     const auto bin = std::upper_bound(kAngleBinsDeg.begin(), kAngleBinsDeg.end(), angle);
     if (bin == kAngleBinsDeg.end()) return;
-    out.push_back({residual, depth, static_cast<std::size_t>(bin - kAngleBinsDeg.begin())});
+    const double cosines = std::hypot(normal.dot(ray), normal.dot(other_ray));
+    if (cosines < kLeastCosines) return;
+    out.push_back({residual / cosines, depth, static_cast<std::size_t>(bin - kAngleBinsDeg.begin())});
   }
 
   const std::vector<View>& views_;
@@ -128,7 +132,7 @@ std::vector<double> normalised(const std::vector<Residual>& residuals, int expon
   std::vector<double> result;
   for (const Residual& r : residuals) {
     if (bin && r.angle_bin != *bin) continue;
-    result.push_back(r.along_normal / std::pow(r.depth / typical, exponent));
+    result.push_back(r.scale / std::pow(r.depth / typical, exponent));
   }
   return result;
 }
@@ -202,8 +206,7 @@ NoiseCalibration calibrateNoise(const std::vector<View>& views, const ViewGraph&
   NoiseCalibration result{guess, 1, guess.at(typical_depth), residuals.size()};
   if (residuals.size() < kEnoughPairs) return result;
   result.exponent = likeliestExponent(residuals, typical_depth);
-  // A residual is the difference of two measurements.
-  const double scale = largestBinScale(residuals, result.exponent, typical_depth) / std::numbers::sqrt2;
+  const double scale = largestBinScale(residuals, result.exponent, typical_depth);
   if (!(scale > 0)) return result;
   result.scale_at_median = scale;
   result.noise = powerLaw(scale, result.exponent, typical_depth);

@@ -46,19 +46,42 @@ std::size_t LevelQueue::bytes() const {
   return tops_.capacity() * sizeof(tops_[0]) + links_.capacity() * sizeof(links_[0]);
 }
 
-Forests::Forests(const Network& network, const Progress& progress)
+Forests::Forests(const Network& network, Orientation orientation, const Progress& progress)
     : network_(network),
+      orientation_(orientation),
       progress_(progress),
       residual_(network.arcCount()),
       excess_(network.nodeCount()),
       parent_(network.nodeCount(), kRoot),
       level_(network.nodeCount(), 0) {
-  for (std::uint32_t arc = 0; arc < network.arcCount(); ++arc) residual_[arc] = network.capacity(arc);
+  const bool reversed = orientation == Orientation::Reversed;
+  for (std::uint32_t arc = 0; arc < network.arcCount(); ++arc) {
+    residual_[arc] = network.capacity(reversed ? network.mate(arc) : arc);
+  }
   for (std::uint32_t node = 0; node < network.nodeCount(); ++node) {
-    excess_[node] = network.terminal(node);
-    if (excess_[node] != 0) ++in_forests_;
+    excess_[node] = reversed ? -network.terminal(node) : network.terminal(node);
+  }
+  settleNeighbours();
+  for (std::uint32_t node = 0; node < network.nodeCount(); ++node) {
     if (excess_[node] > 0) place<Tree::Source>(node, kRoot, 1);
     if (excess_[node] < 0) place<Tree::Sink>(node, kRoot, 1);
+    if (excess_[node] != 0) ++in_forests_;
+  }
+}
+
+/// Excesses next to deficits need no forest to find each other: one sweep in memory order.
+void Forests::settleNeighbours() {
+  for (std::uint32_t node = 0; node < network_.nodeCount(); ++node) {
+    const std::uint32_t end = network_.firstArc(node + 1);
+    for (std::uint32_t arc = network_.firstArc(node); arc < end && excess_[node] > 0; ++arc) {
+      const std::uint32_t neighbour = network_.head(arc);
+      if (excess_[neighbour] >= 0) continue;
+      const std::int64_t wanted = std::min(excess_[node], -excess_[neighbour]);
+      const auto amount = static_cast<std::uint32_t>(std::min<std::int64_t>(wanted, residual_[arc]));
+      push(arc, amount);
+      excess_[node] -= amount;
+      excess_[neighbour] += amount;
+    }
   }
 }
 
@@ -76,7 +99,28 @@ void Forests::maximiseFlow() {
 
 template <Tree T>
 void Forests::exhaust() {
-  while (!frontier<T>().nodes.empty()) growLevel<T>();
+  std::vector<std::uint32_t> joined;
+  const auto joinIfReached = [&](std::uint32_t node) {
+    const std::uint32_t end = network_.firstArc(node + 1);
+    for (std::uint32_t arc = network_.firstArc(node); arc < end && level_[node] == 0; ++arc) {
+      if (!isIn<T>(network_.head(arc)) || room<T>(arc) == 0) continue;
+      level_[node] = levelAt<T>(1);
+      joined.push_back(node);
+    }
+  };
+  for (std::uint32_t node = 0; node < network_.nodeCount(); ++node) {
+    if (level_[node] == 0) joinIfReached(node);
+    while (!joined.empty()) {
+      const std::uint32_t last = joined.back();
+      joined.pop_back();
+      const std::uint32_t end = network_.firstArc(last + 1);
+      for (std::uint32_t arc = network_.firstArc(last); arc < end; ++arc) {
+        if (level_[network_.head(arc)] != 0 || room<opposite(T)>(arc) == 0) continue;
+        level_[network_.head(arc)] = levelAt<T>(1);
+        joined.push_back(network_.head(arc));
+      }
+    }
+  }
 }
 
 /// Gives the node its place in the forest; on the deepest levels that makes it one to scan.
@@ -281,10 +325,11 @@ std::uint32_t Forests::nearestParent(std::uint32_t node) const {
 
 template <Tree T>
 void Forests::orphanChildren(std::uint32_t node) {
+  const std::int32_t level_of_children = levelAt<T>(depth<T>(node) + 1);
   const std::uint32_t end = network_.firstArc(node + 1);
   for (std::uint32_t arc = network_.firstArc(node); arc < end; ++arc) {
     const std::uint32_t child = network_.head(arc);
-    if (isIn<T>(child) && parent_[child] == network_.mate(arc)) orphan<T>(child);
+    if (level_[child] == level_of_children && parent_[child] == network_.mate(arc)) orphan<T>(child);
   }
 }
 
@@ -318,18 +363,26 @@ void Forests::tick() {
   progress_.report("minimum cut", static_cast<double>(in_forests_) / static_cast<double>(level_.size()));
 }
 
+void Forests::turnBack() {
+  for (std::uint32_t arc = 0; arc < network_.arcCount(); ++arc) {
+    if (arc < network_.mate(arc)) std::swap(residual_[arc], residual_[network_.mate(arc)]);
+  }
+  for (std::int64_t& excess : excess_) excess = -excess;
+  for (std::int32_t& level : level_) level = -level;
+}
+
 MinCut Forests::takeResult(CutTies ties) {
+  if (orientation_ == Orientation::Reversed) turnBack();
   MinCut cut;
   cut.statistics = statistics_;
-  cut.residual = std::move(residual_);
   cut.sides.reserve(level_.size());
-  cut.excess.reserve(level_.size());
   for (std::uint32_t node = 0; node < level_.size(); ++node) {
     const bool source = ties == CutTies::SmallestSource ? level_[node] > 0 : level_[node] >= 0;
     cut.sides.push_back(source ? CutSide::Source : CutSide::Sink);
-    cut.excess.push_back(excess_[node]);
     cut.flow += std::max<std::int64_t>(network_.terminal(node), 0) - std::max<std::int64_t>(excess_[node], 0);
   }
+  cut.residual = std::move(residual_);
+  cut.excess = std::move(excess_);
   return cut;
 }
 

@@ -24,6 +24,11 @@ namespace vdbfuse::mincut {
 
 enum class Tree : std::uint8_t { Source, Sink };
 
+/// Reversed: the solver sees every arc the other way round, and demand as supply. The source forest is the
+/// one in which excess is carried on to where it may be needed next, so that it should be the one with fewer
+/// roots.
+enum class Orientation : std::uint8_t { AsGiven, Reversed };
+
 constexpr Tree opposite(Tree tree) { return tree == Tree::Source ? Tree::Sink : Tree::Source; }
 
 /// Nodes waiting to be processed, by level, each with an arc that goes with it. A node may wait more than
@@ -61,7 +66,7 @@ class LevelQueue {
 
 class Forests {
  public:
-  Forests(const Network& network, const Progress& progress);
+  Forests(const Network& network, Orientation orientation, const Progress& progress);
 
   /// Grows both forests until one cannot grow any more: the flow is maximum.
   void maximiseFlow();
@@ -108,6 +113,8 @@ class Forests {
     return frontiers_[static_cast<std::size_t>(T)];
   }
 
+  void settleNeighbours();
+  void turnBack();
   template <Tree T>
   void place(std::uint32_t node, std::uint32_t parent, std::int32_t depth);
   template <Tree T>
@@ -141,6 +148,7 @@ class Forests {
   void tick();
 
   const Network& network_;
+  Orientation orientation_;
   const Progress& progress_;
   std::vector<std::uint32_t> residual_;
   std::vector<std::int64_t> excess_;  ///< terminal + inflow − outflow

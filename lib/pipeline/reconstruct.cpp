@@ -77,7 +77,7 @@ Reconstruction reconstruct(const ViewSequence& sequence, const ReconstructOption
   StepTimer timer;
 
   timer.start("load");
-  std::vector<View> views = loadViews(sequence, options, progress);
+  std::vector<View> views = loadViews(sequence, progress);
   result.width = static_cast<std::size_t>(views.front().map.depth.width());
   result.height = static_cast<std::size_t>(views.front().map.depth.height());
 

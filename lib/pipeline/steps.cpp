@@ -44,8 +44,6 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(options.voxel == 0 || options.resolution == 0, "voxel and resolution exclude each other");
   require(!options.domain || !options.domain->isEmpty(), "the box of the domain is empty");
   require(options.max_level >= 0 && options.max_level <= 6, "max_level must lie in 0 ... 6");
-  require(options.min_depth >= 0 && options.max_depth >= 0, "depth limits must not be negative");
-  require(options.max_depth == 0 || options.max_depth > options.min_depth, "max_depth must exceed min_depth");
   require(options.noise_scale >= 0, "noise_scale must be positive");
   require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
           "outliers must lie in [0, 1)");
@@ -62,15 +60,11 @@ void requireUsable(const ViewSequence& views, const ReconstructOptions& options)
   if (views.empty()) throw InvalidArgument("views", "there are none");
 }
 
-std::vector<View> loadViews(const ViewSequence& sequence, const ReconstructOptions& options,
-                            const Progress& progress) {
+std::vector<View> loadViews(const ViewSequence& sequence, const Progress& progress) {
   std::vector<View> views(sequence.size());
   ProgressStep step(progress, "load views", sequence.size());
   parallelFor(sequence.size(), 1, [&](std::size_t i, std::size_t) {
     views[i] = sequence.load(i);
-    for (float& d : views[i].map.depth) {
-      if (d < options.min_depth || (options.max_depth > 0 && d > options.max_depth)) d = kInvalidDepth;
-    }
     views[i].map.color = {};
     step.advance();
   });

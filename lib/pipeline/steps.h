@@ -10,9 +10,8 @@ namespace vdbfuse {
 
 void requireUsable(const ViewSequence& views, const ReconstructOptions& options);
 
-/// All views in memory, depths outside [min_depth, max_depth] dropped.
-std::vector<View> loadViews(const ViewSequence& views, const ReconstructOptions& options,
-                            const Progress& progress);
+/// All views in memory, without their colours.
+std::vector<View> loadViews(const ViewSequence& views, const Progress& progress);
 
 ViewGraph makeGraph(const std::vector<View>& views, const DepthStatistics& depths);
 

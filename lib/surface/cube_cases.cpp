@@ -40,8 +40,8 @@ std::array<int, 12> successors(std::uint8_t inside) {
       if (!isInside(face[k]) || isInside(face[(k + 1) % 4])) continue;
       std::size_t end = k + 1;
       while (!isInside(face[(end + 1) % 4])) ++end;
-      next[static_cast<std::size_t>(edgeBetween(face[k], face[(k + 1) % 4]))] =
-          edgeBetween(face[end % 4], face[(end + 1) % 4]);
+      const int entering = edgeBetween(face[end % 4], face[(end + 1) % 4]);
+      next[static_cast<std::size_t>(entering)] = edgeBetween(face[k], face[(k + 1) % 4]);
     }
   }
   return next;

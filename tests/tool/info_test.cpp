@@ -68,7 +68,7 @@ TEST(Info, JsonHoldsTheSame) {
   // What is there stays there unless told otherwise.
   const ToolResult again = runTool(arguments);
   EXPECT_EQ(again.exit_code, 1);
-  EXPECT_EQ(again.err, "vdbfuse: " + file.string() + ": exists already; --overwrite replaces it\n");
+  EXPECT_EQ(again.err, "vdbfuse: " + file.string() + ": exists already; give --overwrite to replace it\n");
   EXPECT_EQ(runTool(arguments + " --overwrite").exit_code, 0);
   EXPECT_EQ(nlohmann::json::parse(readText(file))["depth"]["median"], 2.0);
 }

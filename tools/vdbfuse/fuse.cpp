@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "fuse_report.h"
 #include "progress_line.h"
+#include "read_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/io/depth_set.h"
@@ -29,10 +30,6 @@ const std::map<std::string, NoiseShape> kShapes = {
 using NoReturn = JudgeOptions::NoReturn;
 const std::map<std::string, NoReturn> kNoReturns = {
     {"ignore", NoReturn::Ignore}, {"free", NoReturn::Free}, {"auto", NoReturn::Auto}};
-const std::map<std::string, DepthKind> kDepthKinds = {{"z", DepthKind::Z},
-                                                      {"range", DepthKind::Range},
-                                                      {"disparity", DepthKind::Disparity},
-                                                      {"inverse", DepthKind::Inverse}};
 
 struct Request {
   fs::path input, output, grids, json;
@@ -40,8 +37,6 @@ struct Request {
   ReconstructOptions reconstruct;
   std::vector<double> box;
   std::string border = "auto", outliers = "auto";
-  double depth_scale = 0;
-  DepthKind depth_kind = DepthKind::Z;
   std::size_t views = 0;
   int threads = 0;
   bool no_reliability = false, overwrite = false, quiet = false;
@@ -58,8 +53,9 @@ CLI::Option* choice(CLI::App& app, const std::string& name, T& target, const std
 }
 
 void addGridOptions(CLI::App& app, Request& r) {
-  auto* voxel = app.add_option("--voxel", r.reconstruct.voxel, "Edge of the finest cells, in the unit of the poses")
-                    ->check(CLI::PositiveNumber);
+  auto* voxel =
+      app.add_option("--voxel", r.reconstruct.voxel, "Edge of the finest cells, in the unit of the poses")
+          ->check(CLI::PositiveNumber);
   app.add_option("--resolution", r.reconstruct.resolution, "Instead: longest side of the domain / voxel")
       ->check(CLI::PositiveNumber)
       ->excludes(voxel);
@@ -72,20 +68,18 @@ void addGridOptions(CLI::App& app, Request& r) {
 }
 
 void addSensorOptions(CLI::App& app, Request& r) {
-  app.add_option("--format", r.read.format, "Format of INPUT; default: found out (see 'vdbfuse formats')");
-  app.add_option("--depth-scale", r.depth_scale, "A stored number times this is a length")->check(CLI::PositiveNumber);
-  choice(app, "--depth-kind", r.depth_kind, kDepthKinds, "What the stored numbers measure");
-  app.add_option("--min-depth", r.reconstruct.min_depth, "Ignore nearer depths")->check(CLI::NonNegativeNumber);
-  app.add_option("--max-depth", r.reconstruct.max_depth, "Ignore farther depths")->check(CLI::PositiveNumber);
+  addReadOptions(app, r.read);
   app.add_option("--views", r.views, "Use the first N views only")->check(CLI::PositiveNumber);
   choice(app, "--noise", r.reconstruct.noise_shape, kShapes, "Shape of the noise of depths");
   app.add_option("--noise-scale", r.reconstruct.noise_scale,
                  "Standard deviation at the median depth; default: from the overlap of the views")
       ->check(CLI::PositiveNumber);
-  app.add_option("--outliers", r.outliers, "Share of wrong depths, the same for every pixel; auto: judged by pixel")
+  app.add_option("--outliers", r.outliers,
+                 "Share of wrong depths, the same for every pixel; auto: judged by pixel")
       ->capture_default_str();
   app.add_flag("--no-reliability", r.no_reliability, "Believe every pixel (as --outliers 0.01)");
-  choice(app, "--no-return", r.reconstruct.judge.no_return, kNoReturns, "What a missing depth around an object means");
+  choice(app, "--no-return", r.reconstruct.judge.no_return, kNoReturns,
+         "What a missing depth around an object means");
 }
 
 void addEnergyOptions(CLI::App& app, Request& r) {
@@ -98,25 +92,32 @@ void addEnergyOptions(CLI::App& app, Request& r) {
   app.add_option("--visibility", o.evidence.visibility, "One visibility v in place of the prior")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--prior", o.evidence.prior, "Largest prior log-odds of outside")->capture_default_str();
-  app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")->capture_default_str();
-  app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.3/voxel")->check(CLI::PositiveNumber);
+  app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")
+      ->capture_default_str();
+  app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.3/voxel")
+      ->check(CLI::PositiveNumber);
   app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap")->capture_default_str();
-  app.add_option("--truncation", o.truncation, "Of --method tsdf; default 4 voxels")->check(CLI::PositiveNumber);
+  app.add_option("--truncation", o.truncation, "Of --method tsdf; default 4 voxels")
+      ->check(CLI::PositiveNumber);
 }
 
 void addOutputOptions(CLI::App& app, Request& r) {
-  app.add_option("--save-grids", r.grids, "Also write rho, sigma, support and the signed field as OpenVDB grids");
+  app.add_option("--save-grids", r.grids,
+                 "Also write rho, sigma, support and the signed field as OpenVDB grids");
   app.add_option("--json", r.json, "Write what was done as one JSON object");
-  app.add_option("--threads", r.threads, "Number of threads; 0: all processors")->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", r.threads, "Number of threads; 0: all processors")
+      ->check(CLI::NonNegativeNumber);
   app.add_flag("--overwrite", r.overwrite, "Replace existing output files");
   app.add_flag("--quiet", r.quiet, "Print errors only");
 }
 
 void requireNew(const fs::path& path, const Request& request) {
   if (path.empty()) return;
-  if (!request.overwrite && fs::exists(path)) throw IoError(path, "exists already; give --overwrite to replace it");
+  if (!request.overwrite && fs::exists(path))
+    throw IoError(path, "exists already; give --overwrite to replace it");
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder)) throw IoError(path, "cannot be written: there is no folder " + folder.string());
+  if (!fs::is_directory(folder))
+    throw IoError(path, "cannot be written: there is no folder " + folder.string());
 }
 
 double parseShare(const std::string& text) {
@@ -135,7 +136,8 @@ double parseShare(const std::string& text) {
 void resolve(Request& r) {
   ReconstructOptions& o = r.reconstruct;
   if (!r.box.empty()) {
-    o.domain = Box(Eigen::Vector3d(r.box[0], r.box[1], r.box[2]), Eigen::Vector3d(r.box[3], r.box[4], r.box[5]));
+    o.domain =
+        Box(Eigen::Vector3d(r.box[0], r.box[1], r.box[2]), Eigen::Vector3d(r.box[3], r.box[4], r.box[5]));
     if (o.domain->isEmpty()) throw InvalidArgument("--bbox", "the lower corner must come first");
   }
   if (r.border != "auto") {
@@ -188,11 +190,7 @@ void addFuse(CLI::App& app, Action& action) {
   addSensorOptions(sub, *request);
   addEnergyOptions(sub, *request);
   addOutputOptions(sub, *request);
-  sub.callback([&sub, &action, request] {
-    if (sub.count("--depth-scale") > 0) request->read.depth_scale = request->depth_scale;
-    if (sub.count("--depth-kind") > 0) request->read.depth_kind = request->depth_kind;
-    action = [request] { fuse(*request); };
-  });
+  sub.callback([&action, request] { action = [request] { fuse(*request); }; });
 }
 
 }  // namespace vdbfuse::tool

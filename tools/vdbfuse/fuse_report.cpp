@@ -2,23 +2,22 @@
 #include "fuse_report.h"
 
 #include <cstdio>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "vdbfuse/base/errors.h"
-#include "vdbfuse/io/atomic_file.h"
+#include "json_file.h"
 
 namespace vdbfuse::tool {
 namespace {
 
-using nlohmann::ordered_json;
-
 const char* nameOf(EvidenceRule rule) {
   switch (rule) {
-    case EvidenceRule::Outside: return "outside";
-    case EvidenceRule::Paper: return "paper";
-    case EvidenceRule::NoSelfOcclusion: return "no-self-occlusion";
-    case EvidenceRule::Constant: return "constant";
+    case EvidenceRule::Outside:
+      return "outside";
+    case EvidenceRule::Paper:
+      return "paper";
+    case EvidenceRule::NoSelfOcclusion:
+      return "no-self-occlusion";
+    case EvidenceRule::Constant:
+      return "constant";
   }
   return "";
 }
@@ -35,37 +34,43 @@ const char* nameOf(Method method) { return method == Method::Visibility ? "visib
 
 const char* nameOf(ConfidenceDirection direction) {
   switch (direction) {
-    case ConfidenceDirection::None: return "none";
-    case ConfidenceDirection::HighIsGood: return "high is good";
-    case ConfidenceDirection::HighIsBad: return "high is bad";
-    case ConfidenceDirection::Uninformative: return "uninformative";
+    case ConfidenceDirection::None:
+      return "none";
+    case ConfidenceDirection::HighIsGood:
+      return "high is good";
+    case ConfidenceDirection::HighIsBad:
+      return "high is bad";
+    case ConfidenceDirection::Uninformative:
+      return "uninformative";
   }
   return "";
 }
 
-const char* lawName(int exponent) { return exponent == 0 ? "constant" : exponent == 1 ? "linear" : "quadratic"; }
+const char* lawName(int exponent) {
+  return exponent == 0 ? "constant" : exponent == 1 ? "linear" : "quadratic";
+}
 
-ordered_json json(const Box& box) {
+Json json(const Box& box) {
   return {box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()};
 }
 
-ordered_json optionsJson(const Reconstruction& result, const ReconstructOptions& o) {
-  ordered_json j = {{"method", nameOf(o.method)},
-                    {"voxel", result.grid.voxel},
-                    {"bbox", json(result.grid.domain)},
-                    {"noise", nameOf(o.noise_shape)},
-                    {"outliers", o.outliers ? ordered_json(*o.outliers) : ordered_json("auto")},
-                    {"rule", nameOf(o.evidence.rule)},
-                    {"visibility_prior", o.evidence.visibility_prior},
-                    {"visibility", o.evidence.visibility},
-                    {"prior", o.evidence.prior},
-                    {"balloon", o.evidence.balloon},
-                    {"mu", o.mu}};
+Json optionsJson(const Reconstruction& result, const ReconstructOptions& o) {
+  Json j = {{"method", nameOf(o.method)},
+            {"voxel", result.grid.voxel},
+            {"bbox", json(result.grid.domain)},
+            {"noise", nameOf(o.noise_shape)},
+            {"outliers", o.outliers ? Json(*o.outliers) : Json("auto")},
+            {"rule", nameOf(o.evidence.rule)},
+            {"visibility_prior", o.evidence.visibility_prior},
+            {"visibility", o.evidence.visibility},
+            {"prior", o.evidence.prior},
+            {"balloon", o.evidence.balloon},
+            {"mu", o.mu}};
   if (result.cut) j.update({{"lambda", result.cut->lambda}, {"border", nameOf(result.cut->border)}});
   return j;
 }
 
-ordered_json calibrationJson(const CalibrationReport& c) {
+Json calibrationJson(const CalibrationReport& c) {
   return {{"noise_scale", c.noise_scale},
           {"noise_law", lawName(c.noise_exponent)},
           {"median_depth", c.median_depth},
@@ -76,7 +81,7 @@ ordered_json calibrationJson(const CalibrationReport& c) {
           {"confidence_direction", nameOf(c.confidence)}};
 }
 
-ordered_json meshJson(const Reconstruction& result, const TopologyReport& t) {
+Json meshJson(const Reconstruction& result, const TopologyReport& t) {
   return {{"vertices", result.mesh.vertices.size()},
           {"triangles", result.mesh.triangles.size()},
           {"components", t.components},
@@ -87,8 +92,8 @@ ordered_json meshJson(const Reconstruction& result, const TopologyReport& t) {
           {"invented_area_share", result.invented_area_share}};
 }
 
-ordered_json stepsJson(const std::vector<StepTime>& steps) {
-  ordered_json list = ordered_json::array();
+Json stepsJson(const std::vector<StepTime>& steps) {
+  Json list = Json::array();
   for (const StepTime& s : steps) {
     list.push_back({{"name", s.name}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
   }
@@ -103,8 +108,9 @@ double totalSeconds(const std::vector<StepTime>& steps) {
 
 }  // namespace
 
-void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result, const FuseContext& context) {
-  ordered_json j = {{"version", VDBFUSE_VERSION}, {"command", "fuse"}};
+void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result,
+                   const FuseContext& context) {
+  Json j = jsonOf("fuse");
   j["options"] = optionsJson(result, context.options);
   j["input"] = {{"path", context.input.string()},
                 {"views", context.views},
@@ -112,11 +118,15 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
                 {"height", result.height},
                 {"format", context.format}};
   j["calibration"] = calibrationJson(result.calibration);
-  j["grid"] = {{"voxel", result.grid.voxel},   {"active", result.grid.active}, {"leaves", result.grid.leaves},
-               {"cells", result.grid.cells},   {"levels", result.grid.cells_by_level}};
+  j["grid"] = {{"voxel", result.grid.voxel},
+               {"active", result.grid.active},
+               {"leaves", result.grid.leaves},
+               {"cells", result.grid.cells},
+               {"levels", result.grid.cells_by_level}};
   if (result.cut) {
     const CutEnergy& e = result.cut->energy;
-    j["energy"] = {{"total", e.surface + e.volume}, {"surface", e.surface}, {"volume", e.volume}, {"metric", "faces"}};
+    j["energy"] = {
+        {"total", e.surface + e.volume}, {"surface", e.surface}, {"volume", e.volume}, {"metric", "faces"}};
     j["cut"] = {{"flow", result.cut->flow},
                 {"certified", result.cut->certified},
                 {"nodes", result.cut->nodes},
@@ -127,28 +137,27 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
   j["mesh"] = meshJson(result, context.topology);
   j["steps"] = stepsJson(result.steps);
   j["peak_memory_bytes"] = peakMemoryBytes();
-  AtomicFile file(path);
-  std::ofstream out(file.temporaryPath());
-  out << j.dump(2) << "\n";
-  out.close();
-  if (!out) throw IoError(path, "cannot be written: the disk may be full");
-  file.commit();
+  writeJson(path, j);
 }
 
-void printFuseReport(const Reconstruction& result, const FuseContext& context, const std::filesystem::path& output) {
+void printFuseReport(const Reconstruction& result, const FuseContext& context,
+                     const std::filesystem::path& output) {
   const TopologyReport& t = context.topology;
   const CalibrationReport& c = result.calibration;
   std::printf("%s: %zu vertices, %zu triangles, %zu component%s, %zu open edges\n", output.string().c_str(),
-              result.mesh.vertices.size(), result.mesh.triangles.size(), t.components, t.components == 1 ? "" : "s",
-              t.open_edges);
-  std::printf("voxel %.4g, noise %.3g at depth %.3g (%s), outliers %.1f %%, confidence: %s\n", result.grid.voxel,
-              c.noise_scale, c.median_depth, lawName(c.noise_exponent), 100 * c.outlier_share, nameOf(c.confidence));
+              result.mesh.vertices.size(), result.mesh.triangles.size(), t.components,
+              t.components == 1 ? "" : "s", t.open_edges);
+  std::printf("voxel %.4g, noise %.3g at depth %.3g (%s), outliers %.1f %%, confidence: %s\n",
+              result.grid.voxel, c.noise_scale, c.median_depth, lawName(c.noise_exponent),
+              100 * c.outlier_share, nameOf(c.confidence));
   if (result.cut) {
     std::printf("%zu cells, flow %lld%s, border %s, %.0f %% of the area invented\n", result.grid.cells,
-                static_cast<long long>(result.cut->flow), result.cut->certified ? " (certified)" : " (NOT CERTIFIED)",
-                nameOf(result.cut->border), 100 * result.invented_area_share);
+                static_cast<long long>(result.cut->flow),
+                result.cut->certified ? " (certified)" : " (NOT CERTIFIED)", nameOf(result.cut->border),
+                100 * result.invented_area_share);
   }
-  std::printf("%.1f s, %.0f MiB\n", totalSeconds(result.steps), static_cast<double>(peakMemoryBytes()) / (1 << 20));
+  std::printf("%.1f s, %.0f MiB\n", totalSeconds(result.steps),
+              static_cast<double>(peakMemoryBytes()) / (1 << 20));
   if (result.cut && result.invented_area_share > 1.0 / 3) {
     std::fprintf(stderr, "note: more than a third of the surface was invented, not measured\n");
   }

@@ -27,7 +27,7 @@ void writeJson(const std::filesystem::path& path, const Json& json) {
 }
 
 void refuseExisting(const std::filesystem::path& path) {
-  if (std::filesystem::exists(path)) throw IoError(path, "exists already; --overwrite replaces it");
+  if (std::filesystem::exists(path)) throw IoError(path, "exists already; give --overwrite to replace it");
 }
 
 }  // namespace vdbfuse::tool

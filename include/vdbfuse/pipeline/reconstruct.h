@@ -35,7 +35,6 @@ struct ReconstructOptions {
   std::optional<Border> border;
 
   // The sensor.
-  double min_depth = 0.0, max_depth = 0.0;  ///< depths outside are taken as not measured
   NoiseShape noise_shape = NoiseShape::Gaussian;
   double noise_scale = 0.0;  ///< standard deviation at the median depth; default: from overlapping views
   std::optional<double>
