@@ -7,7 +7,8 @@
 namespace vdbfuse::mincut {
 
 void LevelQueue::push(Item item, std::int32_t level) {
-  if (static_cast<std::size_t>(level) >= tops_.size()) tops_.resize(2 * static_cast<std::size_t>(level) + 1, kEnd);
+  if (static_cast<std::size_t>(level) >= tops_.size())
+    tops_.resize(2 * static_cast<std::size_t>(level) + 1, kEnd);
   if (size_ == 0) {
     links_.clear();
     lowest_ = highest_ = level;
