@@ -14,6 +14,7 @@
 #include "vdbfuse/io/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/png.h"
+#include "vdbfuse/mesh/closest_point.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 struct Request {
-  fs::path input, output;
+  fs::path input, output, reference;
   std::string from, size = "800x600", color = "shaded", up = "z";
   std::vector<double> eye, look, range;
   bool flat = false, overwrite = false;
@@ -57,10 +58,20 @@ ViewHeader viewOf(const Request& request) {
 ViewHeader camera(const Request& request, const TriangleMesh& mesh, const Vector3d& up) {
   if (!request.from.empty()) return viewOf(request);
   if (mesh.triangles.empty()) throw IoError(request.input, "", "a mesh", "no triangles");
-  const Box box = boundingBox(mesh);
-  if (request.eye.empty()) return framingCamera(box, up, request.width, request.height);
-  const Vector3d target = request.look.empty() ? Vector3d(box.center()) : vector(request.look);
+  if (request.eye.empty()) return framingCamera(mesh, up, request.width, request.height);
+  const Vector3d target = request.look.empty() ? Vector3d(boundingBox(mesh).center()) : vector(request.look);
   return cameraLookingAt(vector(request.eye), target, up, request.width, request.height);
+}
+
+// Distance of each vertex from the surface of `reference`.
+std::vector<float> distances(const TriangleMesh& mesh, const TriangleMesh& reference) {
+  const ClosestPoint surface(reference);
+  std::vector<float> result(mesh.vertices.size());
+  parallelFor(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result[i] = static_cast<float>(surface.query(mesh.vertices[i].cast<double>()).distance);
+  });
+  return result;
 }
 
 RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
@@ -68,7 +79,10 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   options.up = axisNamed(request.up);
   if (request.color == "normal") options.coloring = MeshColoring::Normal;
   if (request.color == "support") options.coloring = MeshColoring::Support;
-  if (request.color == "error") options.coloring = MeshColoring::Values, options.values = mesh.support;
+  if (request.color == "error") {
+    options.coloring = MeshColoring::Values;
+    options.values = distances(mesh, readMesh(request.reference));
+  }
   if (request.flat) options.normals = RenderOptions::Normals::Flat;
   if (!request.range.empty()) options.low = request.range[0], options.high = request.range[1];
   return options;
@@ -107,9 +121,12 @@ void addRender(CLI::App& app, Action& action) {
       ->type_name("x,y,z")
       ->needs(eye);
   command->add_option("--up", request->up, "axis that points up")->check(axisCheck())->capture_default_str();
-  command->add_option("--color", request->color, "error: the values that a PLY file carries as `quality`")
+  command
+      ->add_option("--color", request->color,
+                   "support: agreeing views, orange where invented; error: distance from --reference")
       ->check(CLI::IsMember({"shaded", "normal", "support", "error"}))
       ->capture_default_str();
+  command->add_option("--reference", request->reference, "mesh that --color error measures from");
   command->add_option("--range", request->range, "values at the two ends of the colours")
       ->delimiter(',')
       ->expected(2)
@@ -122,6 +139,8 @@ void addRender(CLI::App& app, Action& action) {
   command->add_option("--threads", request->threads, "0: all processors")->capture_default_str();
   command->add_flag("--overwrite", request->overwrite, "replace an existing picture");
   command->callback([request, size, &action] {
+    if (request->color == "error" && request->reference.empty())
+      throw CLI::RequiredError("--color error: --reference MESH");
     if (request->from.empty() || size->count() > 0)
       std::tie(request->width, request->height) = parseSize(request->size);
     action = [request] { run(*request); };
