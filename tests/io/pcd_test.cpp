@@ -62,20 +62,20 @@ std::string refusal(const std::string& content) {
 TEST(Pcd, BrokenHeadersAreSaidWithTheirLine) {
   const std::string good = header("ascii");
   EXPECT_EQ(refusal(replaced(good, "HEIGHT 5", "HEIGHT 1")),
-            ":11: expected an organised cloud (WIDTH and HEIGHT above 1), found 6x1");
-  EXPECT_EQ(refusal(replaced(good, "POINTS 30", "POINTS 31")), ":11: expected POINTS 30 (WIDTH x HEIGHT), found 31");
-  EXPECT_EQ(refusal(replaced(good, "FIELDS x y z", "FIELDS x y w")), ":11: expected the field z, found none of that name");
+            ": line 11: expected an organised cloud (WIDTH and HEIGHT above 1), found 6x1");
+  EXPECT_EQ(refusal(replaced(good, "POINTS 30", "POINTS 31")), ": line 11: expected POINTS 30 (WIDTH x HEIGHT), found 31");
+  EXPECT_EQ(refusal(replaced(good, "FIELDS x y z", "FIELDS x y w")), ": line 11: expected the field z, found none of that name");
   EXPECT_EQ(refusal(replaced(good, "SIZE 4 4 4", "SIZE 8 4 4")),
-            ":11: expected the field x as one 4-byte float (SIZE 4, TYPE F), found SIZE 8, TYPE F");
-  EXPECT_EQ(refusal(replaced(good, "TYPE F F F", "TYPE F F X")), ":5: expected F, I or U, found 'X'");
-  EXPECT_EQ(refusal(replaced(good, "WIDTH 6", "WIDTH six")), ":7: expected a whole number, found 'six'");
+            ": line 11: expected the field x as one 4-byte float (SIZE 4, TYPE F), found SIZE 8, TYPE F");
+  EXPECT_EQ(refusal(replaced(good, "TYPE F F F", "TYPE F F X")), ": line 5: expected F, I or U, found 'X'");
+  EXPECT_EQ(refusal(replaced(good, "WIDTH 6", "WIDTH six")), ": line 7: expected a whole number, found 'six'");
   EXPECT_EQ(refusal(replaced(good, "DATA ascii", "DATA morse")),
-            ":11: expected DATA ascii, binary or binary_compressed, found 'morse'");
-  EXPECT_EQ(refusal(replaced(good, "VERSION 0.7", "VERSOIN 0.7")), ":2: expected a line of a PCD header, found 'VERSOIN'");
-  EXPECT_EQ(refusal("# .PCD v0.7\nFIELDS x y z\n"), ":3: expected DATA, found the end of the file");
+            ": line 11: expected DATA ascii, binary or binary_compressed, found 'morse'");
+  EXPECT_EQ(refusal(replaced(good, "VERSION 0.7", "VERSOIN 0.7")), ": line 2: expected a line of a PCD header, found 'VERSOIN'");
+  EXPECT_EQ(refusal("# .PCD v0.7\nFIELDS x y z\n"), ": line 3: expected DATA, found the end of the file");
   EXPECT_EQ(refusal(header("ascii", "0 0 0 2 0 0 0")),
-            ":9: expected VIEWPOINT tx ty tz qw qx qy qz with a quaternion of length 1, found length 2.000000");
-  EXPECT_EQ(refusal(header("ascii", "0 0 0 1 0 0")), ":9: expected a number, found the end of the line");
+            ": line 9: expected VIEWPOINT tx ty tz qw qx qy qz with a quaternion of length 1, found length 2.000000");
+  EXPECT_EQ(refusal(header("ascii", "0 0 0 1 0 0")), ": line 9: expected a number, found the end of the line");
 }
 
 TEST(Pcd, TruncatedBinaryDataAreSaidWithTheirByte) {
