@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library in thirty lines: a scanner that does not exist looks at a sphere, and its depth maps become a mesh.
+// The library in thirty lines: a scanner that does not exist looks at a sphere, and its depth maps become a
+// mesh.
 #include <cstdio>
 #include <exception>
 
@@ -20,8 +21,8 @@ int main(int argc, char** argv) try {
   const vdbfuse::Reconstruction result = reconstruct(scan.views(), options);
 
   const vdbfuse::TopologyReport report = vdbfuse::topology(result.mesh);
-  std::printf("%zu triangles, %zu components, %zu open edges\n", result.mesh.triangles.size(), report.components,
-              report.open_edges);
+  std::printf("%zu triangles, %zu components, %zu open edges\n", result.mesh.triangles.size(),
+              report.components, report.open_edges);
   if (argc > 1) vdbfuse::writeMesh(argv[1], result.mesh);
   return report.open_edges == 0 ? 0 : 1;
 } catch (const std::exception& error) {

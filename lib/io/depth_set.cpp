@@ -72,7 +72,8 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
        "images/00000000.png|jpg   optional\n",
        detectMvsnet, readMvsnet},
       {"pcd", "organised point clouds of the Point Cloud Library, one file or a folder",
-       "NAME.pcd   ascii, binary or compressed; x y z as 4-byte floats in the sensor's frame; HEIGHT above 1;\n"
+       "NAME.pcd   ascii, binary or compressed; x y z as 4-byte floats in the sensor's frame; HEIGHT above "
+       "1;\n"
        "           VIEWPOINT is world_from_camera\n",
        detectPcd, readPcd},
   };

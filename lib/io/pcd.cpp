@@ -52,7 +52,8 @@ void addCamera(const PointImage& points, const ViewHeader& header, Clouds& cloud
     camera = cameraOf(moved(points, camera_from_stored));
   }
   if (!camera)
-    throw IoError(clouds.paths[clouds.projections.size()], "", "points of a pinhole camera, one for each pixel",
+    throw IoError(clouds.paths[clouds.projections.size()], "",
+                  "points of a pinhole camera, one for each pixel",
                   "points that no pinhole camera sees at their pixels");
   clouds.projections.emplace_back(*camera);
   clouds.camera_from_stored.push_back(camera_from_stored);
@@ -64,8 +65,8 @@ DepthMap loadCloud(const Clouds& clouds, std::size_t index) {
   if (points.width() != imageWidth(projection) || points.height() != imageHeight(projection))
     throw IoError(clouds.paths[index], "changed since its header was read");
   View view = viewFromPoints(points, projection, RigidTransform::Identity());
-  view.map.depth =
-      sensorDepth(std::move(view.map.depth), projection, encodingFor(clouds.options, projection, 1.0), clouds.options);
+  view.map.depth = sensorDepth(std::move(view.map.depth), projection,
+                               encodingFor(clouds.options, projection, 1.0), clouds.options);
   return view.map;
 }
 
@@ -104,7 +105,8 @@ DepthSet readPcd(const fs::path& path, const ReadOptions& options) {
   DepthSet set;
   std::size_t in_world = 0;
   for (const RigidTransform& t : clouds->camera_from_stored) in_world += !t.matrix().isIdentity();
-  if (in_world > 0) set.notes.push_back(counted(in_world, "cloud") + " in world coordinates, taken back by VIEWPOINT");
+  if (in_world > 0)
+    set.notes.push_back(counted(in_world, "cloud") + " in world coordinates, taken back by VIEWPOINT");
   set.views =
       ViewSequence(std::move(headers), [clouds](std::size_t index) { return loadCloud(*clouds, index); });
   return set;

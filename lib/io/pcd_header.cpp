@@ -124,7 +124,8 @@ class HeaderReader {
     const std::uint64_t wanted = cursor_.position() + point * static_cast<std::uint64_t>(pixels());
     const std::uint64_t found = fileSize(path_);
     if (found < wanted)
-      throw IoError(path_, "byte " + std::to_string(found), std::to_string(wanted) + " bytes", "the end of the file");
+      throw IoError(path_, "byte " + std::to_string(found), std::to_string(wanted) + " bytes",
+                    "the end of the file");
   }
 
   std::int64_t pixels() const { return std::int64_t{header_.width} * header_.height; }

@@ -13,8 +13,8 @@ struct PcdHeader {
   RigidTransform viewpoint = RigidTransform::Identity();  ///< world_from_camera
 };
 
-/// Throws IoError, with the line, when the header is not that of an organised cloud with x, y, z, when VIEWPOINT is no
-/// rigid transform, or when the file is shorter than the header says.
+/// Throws IoError, with the line, when the header is not that of an organised cloud with x, y, z, when
+/// VIEWPOINT is no rigid transform, or when the file is shorter than the header says.
 PcdHeader readPcdHeader(const std::filesystem::path& path);
 
 }  // namespace vdbfuse::io

@@ -30,7 +30,8 @@ fs::path findPart() {
 ReadPcdPoints* openPart(const fs::path& path) {
   const fs::path part = findPart();
   if (part.empty())
-    throw IoError(path, "reading PCD needs the PCL part (vdbfuse_pcl), which was not built or is not installed");
+    throw IoError(path,
+                  "reading PCD needs the PCL part (vdbfuse_pcl), which was not built or is not installed");
   void* library = dlopen(part.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* function = library == nullptr ? nullptr : dlsym(library, kReadPcdPointsSymbol);
   if (function == nullptr)

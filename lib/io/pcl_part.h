@@ -7,9 +7,9 @@
 
 namespace vdbfuse::io {
 
-/// The points of an organised PCD file, as stored, in any of its encodings; by the library vdbfuse_pcl, which lies
-/// beside this one and is opened at the first call. REQUIRES: the header is sound. Throws IoError, also when the
-/// library is missing.
+/// The points of an organised PCD file, as stored, in any of its encodings; by the library vdbfuse_pcl, which
+/// lies beside this one and is opened at the first call. REQUIRES: the header is sound. Throws IoError, also
+/// when the library is missing.
 PointImage readPcdPoints(const std::filesystem::path& path);
 
 }  // namespace vdbfuse::io

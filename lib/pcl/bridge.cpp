@@ -73,14 +73,16 @@ bool hasFields(const pcl::PCLPointCloud2& cloud, std::initializer_list<const cha
 }
 
 void addFan(const pcl::Vertices& polygon, std::size_t vertices, std::vector<Triangle>& triangles) {
-  if (polygon.vertices.size() < 3) throw InvalidArgument("mesh", "expected polygons of three corners or more");
+  if (polygon.vertices.size() < 3)
+    throw InvalidArgument("mesh", "expected polygons of three corners or more");
   for (const auto index : polygon.vertices) {
     if (index < 0 || static_cast<std::size_t>(index) >= vertices)
-      throw InvalidArgument("mesh", "expected an index below " + std::to_string(vertices) + ", found " +
-                                        std::to_string(index));
+      throw InvalidArgument(
+          "mesh", "expected an index below " + std::to_string(vertices) + ", found " + std::to_string(index));
   }
   const auto corner = [&](std::size_t i) { return static_cast<std::uint32_t>(polygon.vertices[i]); };
-  for (std::size_t i = 2; i < polygon.vertices.size(); ++i) triangles.push_back({corner(0), corner(i - 1), corner(i)});
+  for (std::size_t i = 2; i < polygon.vertices.size(); ++i)
+    triangles.push_back({corner(0), corner(i - 1), corner(i)});
 }
 
 }  // namespace
@@ -126,7 +128,8 @@ pcl::PolygonMesh toPolygonMesh(const TriangleMesh& mesh) {
 }
 
 TriangleMesh toTriangleMesh(const pcl::PolygonMesh& mesh) {
-  if (!hasFields(mesh.cloud, {"x", "y", "z"})) throw InvalidArgument("mesh", "expected the fields x, y and z");
+  if (!hasFields(mesh.cloud, {"x", "y", "z"}))
+    throw InvalidArgument("mesh", "expected the fields x, y and z");
   pcl::PCLPointCloud2 source = mesh.cloud;
   const bool normals = hasFields(source, {"normal_x", "normal_y", "normal_z"});
   const bool colors = hasFields(source, {"rgb"}) || hasFields(source, {"rgba"});

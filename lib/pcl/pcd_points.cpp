@@ -36,8 +36,8 @@ pcl::PointCloud<pcl::PointXYZ> readCloud(const std::filesystem::path& path) {
 }  // namespace
 }  // namespace vdbfuse
 
-extern "C" __attribute__((visibility("default"))) void vdbfuse_read_pcd_points(const std::filesystem::path& path,
-                                                                               vdbfuse::PointImage& points) {
+extern "C" __attribute__((visibility("default"))) void vdbfuse_read_pcd_points(
+    const std::filesystem::path& path, vdbfuse::PointImage& points) {
   vdbfuse::silencePcl();
   const pcl::PointCloud<pcl::PointXYZ> cloud = vdbfuse::readCloud(path);
   points = vdbfuse::PointImage(static_cast<int>(cloud.width), static_cast<int>(cloud.height));

@@ -50,18 +50,22 @@ Pinhole fitPinhole(const PointImage& points) {
     }
   }
   if (seen < kFewestPoints)
-    throw InvalidArgument("points", "expected at least 16 points in front of the camera, found " + std::to_string(seen));
-  const Pinhole camera{points.width(), points.height(), across.focal(), down.focal(), across.center(), down.center(), {}};
+    throw InvalidArgument(
+        "points", "expected at least 16 points in front of the camera, found " + std::to_string(seen));
+  const Pinhole camera{
+      points.width(), points.height(), across.focal(), down.focal(), across.center(), down.center(), {}};
   if (!validate(Projection(camera)).empty())
-    throw InvalidArgument("points", "expected points of a camera (x right, y down, z forward), found none that fit");
+    throw InvalidArgument("points",
+                          "expected points of a camera (x right, y down, z forward), found none that fit");
   const double error_px = std::sqrt(across.meanSquareError() + down.meanSquareError());
   if (!(error_px <= kLargestError_px))
-    throw InvalidArgument("points", "expected points of a pinhole camera, found them " + std::to_string(error_px) +
-                                        " pixels off the best one");
+    throw InvalidArgument("points", "expected points of a pinhole camera, found them " +
+                                        std::to_string(error_px) + " pixels off the best one");
   return camera;
 }
 
-View viewFromPoints(const PointImage& points, const Projection& projection, const RigidTransform& world_from_camera) {
+View viewFromPoints(const PointImage& points, const Projection& projection,
+                    const RigidTransform& world_from_camera) {
   if (points.width() != imageWidth(projection) || points.height() != imageHeight(projection))
     throw InvalidArgument("points", "expected an image of the projection's size");
   View view;
@@ -85,7 +89,8 @@ PointImage pointsOf(const View& view) {
                     Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
-      if (depth(x, y) != kInvalidDepth) points(x, y) = unproject(view.projection, x, y, depth(x, y)).cast<float>();
+      if (depth(x, y) != kInvalidDepth)
+        points(x, y) = unproject(view.projection, x, y, depth(x, y)).cast<float>();
     }
   }
   return points;

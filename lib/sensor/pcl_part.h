@@ -8,8 +8,8 @@
 
 namespace vdbfuse {
 
-/// Sets `points` to those of an organised PCD file, as stored. REQUIRES: its header is sound. Throws IoError. (No
-/// return value, because a function that is found by name has C linkage.)
+/// Sets `points` to those of an organised PCD file, as stored. REQUIRES: its header is sound. Throws IoError.
+/// (No return value, because a function that is found by name has C linkage.)
 using ReadPcdPoints = void(const std::filesystem::path& path, PointImage& points);
 
 inline constexpr const char* kReadPcdPointsSymbol = "vdbfuse_read_pcd_points";

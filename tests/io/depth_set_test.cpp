@@ -71,11 +71,11 @@ TEST(DepthSet, UnknownFolderSaysWhatEachFormatMissed) {
 TEST(DepthSet, FileOrNothingInsteadOfAFolderIsSaid) {
   const TemporaryFolder folder;
   writeText(folder / "file", "x");
-  EXPECT_EQ(
-      messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
-      (folder / "file").string() +
-          ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a folder; pcd: not "
-          "a folder and no .pcd file)");
+  EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
+            (folder / "file").string() +
+                ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a "
+                "folder; pcd: not "
+                "a folder and no .pcd file)");
   ReadOptions options;
   for (const char* name : {"rgbd", "mvsnet"}) {
     options.format = name;

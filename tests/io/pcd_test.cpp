@@ -63,25 +63,31 @@ TEST(Pcd, BrokenHeadersAreSaidWithTheirLine) {
   const std::string good = header("ascii");
   EXPECT_EQ(refusal(replaced(good, "HEIGHT 5", "HEIGHT 1")),
             ": line 11: expected an organised cloud (WIDTH and HEIGHT above 1), found 6x1");
-  EXPECT_EQ(refusal(replaced(good, "POINTS 30", "POINTS 31")), ": line 11: expected POINTS 30 (WIDTH x HEIGHT), found 31");
-  EXPECT_EQ(refusal(replaced(good, "FIELDS x y z", "FIELDS x y w")), ": line 11: expected the field z, found none of that name");
+  EXPECT_EQ(refusal(replaced(good, "POINTS 30", "POINTS 31")),
+            ": line 11: expected POINTS 30 (WIDTH x HEIGHT), found 31");
+  EXPECT_EQ(refusal(replaced(good, "FIELDS x y z", "FIELDS x y w")),
+            ": line 11: expected the field z, found none of that name");
   EXPECT_EQ(refusal(replaced(good, "SIZE 4 4 4", "SIZE 8 4 4")),
             ": line 11: expected the field x as one 4-byte float (SIZE 4, TYPE F), found SIZE 8, TYPE F");
   EXPECT_EQ(refusal(replaced(good, "TYPE F F F", "TYPE F F X")), ": line 5: expected F, I or U, found 'X'");
-  EXPECT_EQ(refusal(replaced(good, "WIDTH 6", "WIDTH six")), ": line 7: expected a whole number, found 'six'");
+  EXPECT_EQ(refusal(replaced(good, "WIDTH 6", "WIDTH six")),
+            ": line 7: expected a whole number, found 'six'");
   EXPECT_EQ(refusal(replaced(good, "DATA ascii", "DATA morse")),
             ": line 11: expected DATA ascii, binary or binary_compressed, found 'morse'");
-  EXPECT_EQ(refusal(replaced(good, "VERSION 0.7", "VERSOIN 0.7")), ": line 2: expected a line of a PCD header, found 'VERSOIN'");
+  EXPECT_EQ(refusal(replaced(good, "VERSION 0.7", "VERSOIN 0.7")),
+            ": line 2: expected a line of a PCD header, found 'VERSOIN'");
   EXPECT_EQ(refusal("# .PCD v0.7\nFIELDS x y z\n"), ": line 3: expected DATA, found the end of the file");
   EXPECT_EQ(refusal(header("ascii", "0 0 0 2 0 0 0")),
-            ": line 9: expected VIEWPOINT tx ty tz qw qx qy qz with a quaternion of length 1, found length 2.000000");
-  EXPECT_EQ(refusal(header("ascii", "0 0 0 1 0 0")), ": line 9: expected a number, found the end of the line");
+            ": line 9: expected VIEWPOINT tx ty tz qw qx qy qz with a quaternion of length 1, found length "
+            "2.000000");
+  EXPECT_EQ(refusal(header("ascii", "0 0 0 1 0 0")),
+            ": line 9: expected a number, found the end of the line");
 }
 
 TEST(Pcd, TruncatedBinaryDataAreSaidWithTheirByte) {
   const std::string good = header("binary") + binary(pointsOf(testView()));
-  EXPECT_EQ(refusal(good.substr(0, good.size() - 1)), ": byte " + std::to_string(good.size() - 1) + ": expected " +
-                                                          std::to_string(good.size()) +
+  EXPECT_EQ(refusal(good.substr(0, good.size() - 1)), ": byte " + std::to_string(good.size() - 1) +
+                                                          ": expected " + std::to_string(good.size()) +
                                                           " bytes, found the end of the file");
 }
 
@@ -139,7 +145,8 @@ TEST(Pcd, AsciiAndBinaryGiveTheView) {
 
 TEST(Pcd, FolderHoldsAViewAFile) {
   const TemporaryFolder folder;
-  for (const char* name : {"b.pcd", "a.pcd"}) writeText(folder / name, header("ascii") + ascii(pointsOf(testView())));
+  for (const char* name : {"b.pcd", "a.pcd"})
+    writeText(folder / name, header("ascii") + ascii(pointsOf(testView())));
   const DepthSet set = readDepthSet(folder.path());
   ASSERT_EQ(set.views.size(), 2u);
   EXPECT_EQ(set.views.header(0).name, "a");
@@ -171,7 +178,8 @@ TEST(Pcd, CloudThatNoCameraTookIsRefused) {
   PointImage points = pointsOf(testView());
   for (int x = 0; x < kWidth; ++x) std::swap(points(x, 0), points(kWidth - 1 - x, kHeight - 1));
   EXPECT_EQ(refusal(header("binary") + binary(points)),
-            ": expected points of a pinhole camera, one for each pixel, found points that no pinhole camera sees at "
+            ": expected points of a pinhole camera, one for each pixel, found points that no pinhole camera "
+            "sees at "
             "their pixels");
 }
 
