@@ -43,7 +43,8 @@ build() {
   local name=$1 folder=$2 preset=$3
   shift 3
   step "$name"
-  cmake --preset "$preset" -B "$folder" -DVDBFUSE_WERROR=ON -DVDBFUSE_WITH_PCL="$with_pcl" "$@" >"$folder.log" 2>&1 ||
+  cmake --preset "$preset" -B "$folder" -DVDBFUSE_WERROR=ON -DVDBFUSE_BUILD_TESTS=ON \
+    -DVDBFUSE_BUILD_EXAMPLES=ON -DVDBFUSE_WITH_PCL="$with_pcl" "$@" >"$folder.log" 2>&1 ||
     { cat "$folder.log"; exit 1; }
   rm "$folder.log"
 }
