@@ -18,14 +18,14 @@ struct ToUnit {
   double scale;
 
   Vector3d operator()(const Vector3d& p) const { return (p - center) * scale; }
-  RegionShape operator()(const RegionShape& shape) const {
+  SceneRegionShape operator()(const SceneRegionShape& shape) const {
     struct Visit {
       const ToUnit& to;
-      RegionShape operator()(const Box& b) const { return Box(to(b.min()), to(b.max())); }
-      RegionShape operator()(const CylinderShape& c) const {
+      SceneRegionShape operator()(const Box& b) const { return Box(to(b.min()), to(b.max())); }
+      SceneRegionShape operator()(const CylinderShape& c) const {
         return CylinderShape{to(c.from), to(c.to), c.radius * to.scale};
       }
-      RegionShape operator()(const SphereShape& s) const {
+      SceneRegionShape operator()(const SphereShape& s) const {
         return SphereShape{to(s.center), s.radius * to.scale};
       }
     };
@@ -65,7 +65,9 @@ void addBox(TriangleMesh& mesh, const Box& box, Facing facing) {
 
 }  // namespace
 
-bool contains(const RegionShape& shape, const Vector3d& point) { return std::visit(Contains{point}, shape); }
+bool contains(const SceneRegionShape& shape, const Vector3d& point) {
+  return std::visit(Contains{point}, shape);
+}
 
 std::vector<std::string> sceneNames() { return {"sphere", "box", "torus", "figure"}; }
 
@@ -81,7 +83,7 @@ Scene makeScene(const std::string& name, const SceneOptions& options) {
   };
   const Box bounds(unit(shape->bounds.min()), unit(shape->bounds.max()));
   scene.truth = synth::meshFromDistance(scene.distance, bounds, options.cell);
-  for (const Region& r : shape->regions) scene.regions.push_back({r.name, r.expect, unit(r.shape)});
+  for (const SceneRegion& r : shape->regions) scene.regions.push_back({r.name, r.expect, unit(r.shape)});
   return scene;
 }
 

@@ -44,7 +44,7 @@ double figureDistance(const Vector3d& point) {
   return std::min({torso, head, leg, arm});
 }
 
-std::vector<Region> figureRegions() {
+std::vector<SceneRegion> figureRegions() {
   constexpr double kInset = 0.015;  // of the cavity's core from its walls
   const double front = kTorsoCenter.y() - kTorsoHalf.y(), half = kCavityWidth / 2 - kInset;
   const Box cavity(Vector3d(-half, front, kCavityZ - half),

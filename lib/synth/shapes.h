@@ -11,7 +11,7 @@ namespace vdbfuse::synth {
 struct Shape {
   SignedDistance distance;
   Box bounds;  ///< exact
-  std::vector<Region> regions;
+  std::vector<SceneRegion> regions;
 };
 
 /// Nothing for a name that is not one of sceneNames().

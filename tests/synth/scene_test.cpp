@@ -50,7 +50,7 @@ TEST_P(EveryScene, HasTheVerticesOfItsTruthOnTheSurface) {
 
 TEST_P(EveryScene, AgreesWithItsRegions) {
   Random random(3);
-  for (const Region& region : scene.regions) {
+  for (const SceneRegion& region : scene.regions) {
     int tried = 0;
     for (int i = 0; i < 2000000; ++i) {
       const Vector3d p(random.uniform(-.5, .5), random.uniform(-.5, .5), random.uniform(-.5, .5));
@@ -92,7 +92,7 @@ TEST(Scene, TheLegsOfTheFigureAreFourPercentOfItsHeightThick) {
   const Scene scene = makeScene("figure", {kCoarse});
   const double height = boundingBox(scene.truth).sizes().z();
   const auto leg = std::find_if(scene.regions.begin(), scene.regions.end(),
-                                [](const Region& r) { return r.name == "left leg"; });
+                                [](const SceneRegion& r) { return r.name == "left leg"; });
   ASSERT_NE(leg, scene.regions.end());
   const auto& core = std::get<CylinderShape>(leg->shape);
   EXPECT_NEAR(-scene.distance(0.5 * (core.from + core.to)), 0.02 * height, 1e-3);

@@ -77,7 +77,7 @@ Scene loadScene(const Request& request) {
 
 ordered_json json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-ordered_json json(const Region& region) {
+ordered_json json(const SceneRegion& region) {
   ordered_json j = {{"name", region.name},
                     {"expect", region.expect == RegionSide::Inside ? "inside" : "outside"}};
   if (const auto* box = std::get_if<Box>(&region.shape)) {
@@ -124,7 +124,7 @@ ordered_json describe(const SyntheticScan& scan, const ScanStatistics& statistic
   const Box bounds = boundingBox(scan.scene().truth);
   const DepthRange range = depthRange(options);
   ordered_json regions = ordered_json::array();
-  for (const Region& r : scan.scene().regions) regions.push_back(json(r));
+  for (const SceneRegion& r : scan.scene().regions) regions.push_back(json(r));
   return {{"version", VDBFUSE_VERSION},
           {"scene", scan.scene().name},
           {"up", json(scan.scene().up)},

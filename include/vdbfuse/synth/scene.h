@@ -26,27 +26,27 @@ struct SphereShape {
   Eigen::Vector3d center;
   double radius = 0;
 };
-using RegionShape = std::variant<Box, CylinderShape, SphereShape>;
+using SceneRegionShape = std::variant<Box, CylinderShape, SphereShape>;
 
 /// On which side of the surface a region should end up.
 enum class RegionSide { Inside, Outside };
 
 /// The core of a named part of a scene: well away from the surface, so that it asks whether the part is
 /// there, not whether its surface is exact.
-struct Region {
+struct SceneRegion {
   std::string name;
   RegionSide expect = RegionSide::Inside;
-  RegionShape shape;
+  SceneRegionShape shape;
 };
 
-bool contains(const RegionShape& shape, const Eigen::Vector3d& point);
+bool contains(const SceneRegionShape& shape, const Eigen::Vector3d& point);
 
 struct Scene {
   std::string name;
   TriangleMesh truth;  ///< closed, counter-clockwise seen from outside
   /// Empty for scenes made of a mesh; there the mesh itself is the truth.
   SignedDistance distance;
-  std::vector<Region> regions;
+  std::vector<SceneRegion> regions;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   Eigen::Vector3d front =
       -Eigen::Vector3d::UnitY();  ///< direction from the centre to a camera that sees the front
