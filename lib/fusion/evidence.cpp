@@ -51,7 +51,7 @@ class Combiner {
   void combineOutside(std::span<const Eigen::Vector3d> points, float* out) const {
     const std::size_t nodes = static_cast<std::size_t>(integral_.nodeCount());
     std::vector<float> sums(points.size() * nodes, 0.0f), reports(points.size(), 0.0f);
-    std::vector<int> no_returns(points.size(), 0);
+    std::vector<float> no_returns_left(points.size(), static_cast<float>(options_.max_no_returns));
     for (const PreparedView& prepared : views_) {
       const JudgedView& view = *prepared.view;
       const float weight = static_cast<float>(view.weight);
@@ -62,8 +62,9 @@ class Combiner {
         if (measured != kInvalidDepth) {
           integral_.add(logRatio(prepared, *seen, measured), weight, &sums[i * nodes]);
           reports[i] += weight;
-        } else if (view.no_return(seen->x, seen->y) && no_returns[i]++ < options_.max_no_returns) {
-          integral_.add(no_return_, weight, &sums[i * nodes]);
+        } else if (view.no_return(seen->x, seen->y) && no_returns_left[i] > 0) {
+          integral_.add(no_return_, std::min(weight, no_returns_left[i]), &sums[i * nodes]);
+          no_returns_left[i] -= weight;
         }
       }
     }

@@ -34,11 +34,13 @@ TsdfVolume integrateTsdf(const JudgedViews& judged, const GridFrame& frame, cons
   const std::vector<PreparedView> views = prepare(judged);
   const TouchOptions touch{1.0f, [&](double) { return options.truncation; }};
   const std::vector<Index3> leaves = touchedLeaves(views, frame, domain, touch, progress);
-  TsdfVolume volume{ScalarGrid("surface", frame, 0.0f, leaves), ScalarGrid("weight", frame, 0.0f, leaves)};
+  TsdfVolume volume{ScalarGrid("surface", frame, kUnknown, leaves),
+                    ScalarGrid("weight", frame, 0.0f, leaves)};
   ProgressStep step(progress, "integrate", leaves.size());
   parallelFor(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ScalarGrid::Leaf sum = volume.distance.leaf(i), weight = volume.weight.leaf(i);
+      std::fill(sum.values.begin(), sum.values.end(), 0.0f);
       for (const PreparedView& view : views) addView(view, frame, options.truncation, sum, weight);
       std::transform(sum.values.begin(), sum.values.end(), weight.values.begin(), sum.values.begin(),
                      [](float s, float w) { return w > 0 ? s / w : kUnknown; });

@@ -48,6 +48,10 @@ Octree emptyOctree(const GridFrame& frame, const Box& domain, int max_level) {
     throw InvalidArgument("voxel",
                           "the domain is more than " + std::to_string(kMaxOctreeSide) + " voxels long");
   }
+  constexpr double kLargestIndex = 1e9;  // integer indices, with room for the octree's own slack
+  if (!(low.cwiseAbs().maxCoeff() < kLargestIndex && high.cwiseAbs().maxCoeff() < kLargestIndex)) {
+    throw InvalidArgument("domain", "lies more than 1e9 voxels from the origin of the grid");
+  }
   Octree octree;
   octree.frame = frame;
   octree.max_level = max_level;

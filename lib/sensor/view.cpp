@@ -27,7 +27,8 @@ std::vector<std::string> validate(const View& view) {
   if (!view.map.confidence.empty() && !view.map.confidence.sameSize(depth)) {
     problems.emplace_back("confidence and depth differ in size");
   }
-  if (rotationError(view.world_from_camera.linear()) > 1e-6)
+  if (rotationError(view.world_from_camera.linear()) > 1e-6 ||
+      !view.world_from_camera.translation().allFinite())
     problems.emplace_back("the pose is not a rigid transform");
   return problems;
 }

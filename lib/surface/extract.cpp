@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/surface/extract.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "surface/cube_cases.h"
+#include "surface/split_rim.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 
@@ -59,6 +61,7 @@ struct LeafMesh {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3f> centres;
   std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> rim;  ///< vertices on edges of cubes that were left out
 };
 constexpr std::uint32_t kExtra = 0x80000000u;
 
@@ -155,11 +158,32 @@ class Extractor {
         known = !std::isnan(value);
         inside |= static_cast<unsigned>(isInside(value)) << c;
       }
+      if (!known) appendRim(patch, cube, leaves, meshes_[index].rim);
       if (!known || inside == 0 || inside == 255) continue;
       for (const CubePolygon& polygon : cubePolygons(static_cast<std::uint8_t>(inside))) {
         addPolygon(polygon, cube, leaves, meshes_[index]);
       }
     }
+  }
+
+  void appendRim(const Patch& patch, const Index3& cube, const UpperLeaves& leaves,
+                 std::vector<std::uint32_t>& rim) const {
+    for (std::uint8_t edge = 0; edge < cubeEdges().size(); ++edge) {
+      const CubeEdge& e = cubeEdges()[edge];
+      const Index3 base = cube + Index3(e.base & 1, e.base >> 1 & 1, e.base >> 2);
+      const Index3 end = base + Index3(Index3::Unit(e.axis));
+      const float a = patch.at(base.x(), base.y(), base.z()), b = patch.at(end.x(), end.y(), end.z());
+      if (std::isnan(a) || std::isnan(b) || isInside(a) == isInside(b)) continue;
+      rim.push_back(vertexOn(edge, cube, leaves));
+    }
+  }
+
+  std::vector<std::uint32_t> rimVertices() const {
+    std::vector<std::uint32_t> all;
+    for (const LeafMesh& mesh : meshes_) all.insert(all.end(), mesh.rim.begin(), mesh.rim.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
   }
 
   std::uint32_t vertexOn(std::uint8_t edge, const Index3& cube, const UpperLeaves& leaves) const {
@@ -205,6 +229,7 @@ class Extractor {
         result.triangles.push_back(triangle);
       }
     }
+    splitFans(result, rimVertices());
     dropUnused(result);
     return result;
   }

@@ -97,6 +97,8 @@ float towards(CellLabel label, float magnitude) {
   return label == CellLabel::Outside ? magnitude : -magnitude;
 }
 CellLabel labelOf(float sign) { return sign > 0 ? CellLabel::Outside : CellLabel::Inside; }
+// Zero would count as outside when triangles are made, whatever the label says.
+bool agrees(float value, CellLabel label) { return label == CellLabel::Outside ? value > 0 : value < 0; }
 
 // Grid of +1 (outside) and −1 (inside) on all blocks around the boundary.
 ScalarGrid labelGrid(const Octree& octree, const std::vector<CellLabel>& labels, CellLabel beyond,
@@ -144,7 +146,7 @@ void measureLeaf(const ScalarGrid& labels, const ScalarGrid& support, const Dist
     if (!distance) continue;
     const float limit = static_cast<float>(kCutOff) * voxel;
     value = std::clamp(static_cast<float>(*distance), -limit, limit);
-    if (labelOf(value) != label) value = towards(label, kPutBack * voxel);
+    if (!agrees(value, label)) value = towards(label, kPutBack * voxel);
   }
 }
 
@@ -188,7 +190,7 @@ void smoothLeaf(const ScalarGrid& field, const ScalarGrid& labels, const std::ar
     const Index3 v = voxelOf(i);
     const CellLabel label = labelOf(sides.values[static_cast<std::size_t>(i)]);
     const float value = patch.at(v.x(), v.y(), v.z());
-    out.values[static_cast<std::size_t>(i)] = labelOf(value) == label ? value : towards(label, least);
+    out.values[static_cast<std::size_t>(i)] = agrees(value, label) ? value : towards(label, least);
   }
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/io/File.h>
-#include <openvdb/tools/Prune.h>
 
 #include <cmath>
 #include <system_error>
@@ -13,28 +12,51 @@ namespace {
 
 constexpr const char* kCreator = "vdbfuse";
 
-// A copy with active states set, fit for other tools.
-openvdb::FloatGrid::Ptr forDisk(const ScalarGrid::Impl& impl) {
-  openvdb::FloatGrid::Ptr copy = impl.grid->deepCopy();
-  const float background = copy->background();
-  std::vector<openvdb::FloatTree::LeafNodeType*> leaves;
-  copy->tree().getNodes(leaves);
-  for (auto* leaf : leaves) {
-    for (openvdb::Index i = 0; i < openvdb::FloatTree::LeafNodeType::SIZE; ++i) {
-      const float value = leaf->getValue(i);
-      if (std::isnan(value) || value == background) {
-        leaf->setValueOff(i, background);
-      } else {
-        leaf->setValueOn(i, value);
-      }
+using LeafNode = openvdb::FloatTree::LeafNodeType;
+
+// Largest distance of a level set: the background that other tools expect, who know no unknown voxels.
+float bandWidth(const ScalarGrid::Impl& impl) {
+  float largest = 0;
+  for (const LeafNode* leaf : impl.leaves) {
+    for (openvdb::Index i = 0; i < LeafNode::SIZE; ++i) {
+      const float value = std::abs(leaf->getValue(i));
+      if (value > largest) largest = value;  // false for unknown ones
     }
   }
-  openvdb::tools::pruneInactive(copy->tree());
+  return largest > 0 ? largest : static_cast<float>(impl.frame.voxel);
+}
+
+// A copy with active states set, fit for other tools.
+openvdb::FloatGrid::Ptr forDisk(const ScalarGrid::Impl& impl) {
+  const bool is_level_set = impl.kind == GridKind::LevelSet;
+  const float background = is_level_set ? bandWidth(impl) : impl.grid->background();
+  const auto copy = openvdb::FloatGrid::create(background);
+  copy->setTransform(impl.grid->transform().copy());
+  for (const LeafNode* leaf : impl.leaves) {
+    LeafNode* target = nullptr;
+    for (openvdb::Index i = 0; i < LeafNode::SIZE; ++i) {
+      const float value = leaf->getValue(i);
+      if (std::isnan(value) || (!is_level_set && value == background)) continue;
+      if (target == nullptr) target = copy->tree().touchLeaf(leaf->origin());
+      target->setValueOn(i, value);
+    }
+  }
   copy->setName(impl.name);
   copy->setCreator(kCreator);
-  copy->setGridClass(impl.kind == GridKind::LevelSet ? openvdb::GRID_LEVEL_SET : openvdb::GRID_UNKNOWN);
+  copy->setGridClass(is_level_set ? openvdb::GRID_LEVEL_SET : openvdb::GRID_UNKNOWN);
   for (const auto& [key, value] : impl.metadata) copy->insertMeta(key, openvdb::StringMetadata(value));
   return copy;
+}
+
+// Words that were written with a grid, without those that OpenVDB keeps itself.
+std::map<std::string, std::string> wordsOf(const openvdb::FloatGrid& grid) {
+  std::map<std::string, std::string> words;
+  for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry) {
+    const std::string& key = entry->first;
+    if (key == "name" || key == "creator" || key == "class" || key.starts_with("file_")) continue;
+    words[key] = entry->second->str();
+  }
+  return words;
 }
 
 GridFrame frameOf(const std::filesystem::path& path, const openvdb::FloatGrid& grid) {
@@ -46,8 +68,11 @@ GridFrame frameOf(const std::filesystem::path& path, const openvdb::FloatGrid& g
 }
 
 // Voxels of a level set that are off hold no distance.
-void markUnknown(openvdb::FloatTree::LeafNodeType& leaf) {
-  for (auto value = leaf.beginValueOff(); value; ++value) leaf.setValueOnly(value.pos(), kUnknown);
+void markUnknown(ScalarGrid::Impl& impl) {
+  impl.grid->tree().root().setBackground(kUnknown, /*updateChildNodes=*/true);
+  for (LeafNode* leaf : impl.leaves) {
+    for (auto value = leaf->beginValueOff(); value; ++value) leaf->setValueOnly(value.pos(), kUnknown);
+  }
 }
 
 }  // namespace
@@ -88,9 +113,10 @@ ScalarGrid readGrid(const std::filesystem::path& path, const std::string& name) 
   ScalarGrid result(grid->getName(), frameOf(path, *grid), grid->background());
   result.impl().grid = grid;
   result.impl().listLeaves();
+  result.metadata() = wordsOf(*grid);
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
     result.setKind(GridKind::LevelSet);
-    for (auto* leaf : result.impl().leaves) markUnknown(*leaf);
+    markUnknown(result.impl());
   }
   return result;
 }

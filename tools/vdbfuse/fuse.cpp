@@ -10,6 +10,7 @@
 #include "read_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/io/atomic_file.h"
 #include "vdbfuse/io/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/mesh/topology.h"
@@ -118,6 +119,7 @@ void requireNew(const fs::path& path, const Request& request) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder))
     throw IoError(path, "cannot be written: there is no folder " + folder.string());
+  const AtomicFile can_be_written(path);  // never committed: leaves nothing
 }
 
 double parseShare(const std::string& text) {

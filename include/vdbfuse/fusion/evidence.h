@@ -39,7 +39,7 @@ struct EvidenceOptions {
   double prior = 0.75;
   /// Inflation of constant ballooning, log-odds.
   double balloon = 1.0;
-  /// At most so many views' no-returns count at a point.
+  /// At most so many views' no-returns count at a point, by their weights.
   int max_no_returns = 4;
 };
 

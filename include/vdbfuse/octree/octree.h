@@ -49,7 +49,7 @@ struct OctreeOptions {
 /// Finest cells wherever a voxel of `support` holds at least `threshold`, and for two voxels around; then
 /// cells that double with the distance, graded 2:1 across faces, edges and corners. `domain`: world box;
 /// voxels outside it are ignored, and the octree covers it, rounded outwards to whole coarsest cells. Throws
-/// InvalidArgument when the domain is empty or longer than kMaxOctreeSide.
+/// InvalidArgument when the domain is empty, longer than kMaxOctreeSide or 1e9 voxels away.
 Octree buildOctree(const ScalarGrid& support, float threshold, const Box& domain,
                    const OctreeOptions& options = {});
 

@@ -13,8 +13,8 @@ namespace vdbfuse {
 /// between voxels, with one rule for ambiguous faces (the inside is joined) and polygons triangulated so that
 /// no diagonal lies in a face: for every possible field the mesh is edge- and vertex-manifold and
 /// consistently oriented, and it is closed where all voxels around the surface are known. Cubes with an
-/// unknown corner are left out: an open rim. Missing leaves are unknown. Welded; the same for any number of
-/// threads. World coordinates.
+/// unknown corner are left out: an open rim (whose fans never touch in a vertex). Missing leaves are unknown.
+/// Welded; the same for any number of threads. World coordinates.
 TriangleMesh extractSurface(const ScalarGrid& field, const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -84,12 +84,13 @@ class ScalarGrid {
 /// Origin of the leaf that holds a voxel.
 inline Index3 leafOrigin(const Index3& voxel) { return {voxel.x() & ~7, voxel.y() & ~7, voxel.z() & ~7}; }
 
-/// Writes grids into one .vdb file: voxels equal to the background, or unknown, become inactive. Throws
-/// IoError; leaves an existing file as it was when it fails.
+/// Writes grids into one .vdb file. Unknown voxels become inactive; in a field those equal to the background
+/// do, too. The background of a level set on disk is its largest distance. Throws IoError; leaves an existing
+/// file as it was when it fails.
 void writeGrids(const std::filesystem::path& path, const std::vector<const ScalarGrid*>& grids);
 
-/// Reads a float grid by name, or the first one when `name` is empty. Inactive voxels hold the background
-/// value, or kUnknown in a level set. Throws IoError.
+/// Reads a float grid by name, or the first one when `name` is empty, with its metadata. Inactive voxels hold
+/// the background value, or kUnknown in a level set. Throws IoError.
 ScalarGrid readGrid(const std::filesystem::path& path, const std::string& name = {});
 
 }  // namespace vdbfuse
