@@ -14,7 +14,7 @@ namespace {
 
 template <class Point>
 PointImage pointImage(const pcl::PointCloud<Point>& cloud) {
-  PointImage points(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
+  PointImage points = noPoints(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
   auto* target = points.data();
   for (const Point& p : cloud) *target++ = p.getVector3fMap();
   return points;

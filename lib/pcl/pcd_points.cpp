@@ -40,7 +40,7 @@ extern "C" __attribute__((visibility("default"))) void vdbfuse_read_pcd_points(
     const std::filesystem::path& path, vdbfuse::PointImage& points) {
   vdbfuse::silencePcl();
   const pcl::PointCloud<pcl::PointXYZ> cloud = vdbfuse::readCloud(path);
-  points = vdbfuse::PointImage(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
+  points = vdbfuse::noPoints(static_cast<int>(cloud.width), static_cast<int>(cloud.height));
   if (points.size() != cloud.size())
     throw vdbfuse::IoError(path, "", std::to_string(points.size()) + " points", std::to_string(cloud.size()));
   auto* target = points.data();

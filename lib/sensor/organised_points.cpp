@@ -37,6 +37,10 @@ class LineFit {
 
 }  // namespace
 
+PointImage noPoints(int width, int height) {
+  return {width, height, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())};
+}
+
 Pinhole fitPinhole(const PointImage& points) {
   LineFit across, down;
   std::size_t seen = 0;
@@ -85,8 +89,7 @@ View viewFromPoints(const PointImage& points, const Projection& projection,
 
 PointImage pointsOf(const View& view) {
   const Image<float>& depth = view.map.depth;
-  PointImage points(depth.width(), depth.height(),
-                    Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  PointImage points = noPoints(depth.width(), depth.height());
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
       if (depth(x, y) != kInvalidDepth)

@@ -64,7 +64,7 @@ TEST(OrganisedPoints, TooFewPointsFitNothing) {
 }
 
 TEST(OrganisedPoints, OfAnotherSizeThanTheProjectionAreRefused) {
-  EXPECT_THROW(viewFromPoints(PointImage(3, 3), slantedPlane().projection, RigidTransform::Identity()),
+  EXPECT_THROW(viewFromPoints(noPoints(3, 3), slantedPlane().projection, RigidTransform::Identity()),
                InvalidArgument);
 }
 

@@ -13,6 +13,9 @@ namespace vdbfuse {
 /// A point a pixel; non-finite where nothing was measured.
 using PointImage = Image<Eigen::Vector3f>;
 
+/// An image of NaN.
+PointImage noPoints(int width, int height);
+
 /// The undistorted pinhole camera that sees every point, given in its frame, at the point's pixel: least
 /// squares, u = fx x/z + cx and v = fy y/z + cy. Throws InvalidArgument when fewer than 16 points have z > 0,
 /// when they do not fix the camera, or when they lie more than half a pixel off (root of the mean square):
