@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/fusion/no_return.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "vdbfuse/sensor/view.h"
+
+namespace vdbfuse {
+namespace {
+
+// Depth 1 within the box, missing around it.
+Image<float> boxImage() {
+  Image<float> depth(60, 50, kInvalidDepth);
+  for (int y = 15; y < 35; ++y)
+    for (int x = 12; x < 48; ++x) depth(x, y) = 1.0f;
+  return depth;
+}
+
+TEST(NoReturn, TheRingOfEmptySpaceAroundAnObjectIsEmpty) {
+  const Image<float> depth = boxImage();
+  const Image<std::uint8_t> empty = emptyRegions(depth);
+  for (int y = 0; y < 50; ++y)
+    for (int x = 0; x < 60; ++x) ASSERT_EQ(empty(x, y), depth(x, y) == kInvalidDepth) << x << " " << y;
+  EXPECT_EQ(borderShare(empty), 1.0);
+}
+
+TEST(NoReturn, AHoleInTheMiddleIsNot) {
+  Image<float> depth = boxImage();
+  for (int y = 18; y < 32; ++y)
+    for (int x = 20; x < 40; ++x) depth(x, y) = kInvalidDepth;
+  const Image<std::uint8_t> empty = emptyRegions(depth);
+  EXPECT_EQ(empty(30, 25), 0);
+  EXPECT_EQ(empty(5, 25), 1);
+}
+
+TEST(NoReturn, IsolatedMissesAndNarrowStripsAreChance) {
+  Image<float> depth(60, 50, 1.0f);
+  for (int x = 0; x < 60; x += 3) depth(x, 0) = kInvalidDepth;  // on the border, but single
+  for (int y = 0; y < 50; ++y)
+    for (int x = 30; x < 38; ++x) depth(x, y) = kInvalidDepth;  // eight wide: does not survive 9×9
+  const Image<std::uint8_t> empty = emptyRegions(depth);
+  EXPECT_EQ(std::count(empty.begin(), empty.end(), 1), 0);
+  for (int y = 0; y < 50; ++y) depth(38, y) = kInvalidDepth;  // nine wide
+  EXPECT_EQ(emptyRegions(depth)(34, 25), 1);
+  EXPECT_EQ(borderShare(empty), 0.0);
+}
+
+TEST(NoReturn, FullAndTinyImagesAreNoTrouble) {
+  EXPECT_EQ(borderShare(emptyRegions(Image<float>(3, 2, kInvalidDepth))), 1.0);
+  EXPECT_EQ(borderShare(emptyRegions(Image<float>(3, 2, 1.0f))), 0.0);
+  EXPECT_EQ(borderShare({}), 0.0);
+}
+
+}  // namespace
+}  // namespace vdbfuse

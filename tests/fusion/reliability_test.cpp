@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/fusion/reliability.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "fusion/scenes.h"
+#include "vdbfuse/base/parallel.h"
+
+namespace vdbfuse {
+namespace {
+
+enum class Confidence { None, High, Low, Noise };
+
+// A noisy sphere of which 12 % of the pixels are replaced by depths in [near, far].
+struct Planted {
+  std::vector<View> views = test::sphereViews(24);
+  std::vector<Image<std::uint8_t>> is_outlier;
+  SensorModel sensor = test::sphereSensor(0.004);
+
+  explicit Planted(Confidence kind, double share = 0.12) {
+    test::addNoise(views, {0.004, 0, 0}, 9);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      Random random(11, i);
+      DepthMap& map = views[i].map;
+      is_outlier.emplace_back(64, 64);
+      if (kind != Confidence::None) map.confidence = Image<float>(64, 64);
+      for (std::size_t p = 0; p < map.depth.size(); ++p) {
+        float& d = map.depth.data()[p];
+        const bool bad = d != kInvalidDepth && random.uniform() < share;
+        if (bad) d = static_cast<float>(random.uniform(1.4, 2.6));
+        is_outlier.back().data()[p] = bad;
+        if (kind == Confidence::None) continue;
+        const double quality = kind == Confidence::Noise  ? 0
+                               : kind == Confidence::High ? (bad ? -1 : 1)
+                                                          : (bad ? 1 : -1);
+        map.confidence.data()[p] = static_cast<float>(quality + random.normal());
+      }
+    }
+  }
+
+  Judgement judged(const JudgeOptions& options = {}) const {
+    return judge(views, sensor, ViewGraph(test::headersOf(views), 1.7), options);
+  }
+
+  // Shares of planted outliers that are found, and of inliers that are lost.
+  std::pair<double, double> foundAndLost(const Judgement& judgement) const {
+    double bad = 0, found = 0, good = 0, lost = 0;
+    for (std::size_t i = 0; i < views.size(); ++i)
+      for (std::size_t p = 0; p < is_outlier[i].size(); ++p) {
+        if (views[i].map.depth.data()[p] == kInvalidDepth) continue;
+        const bool doubted = judgement.judged.views[i].outlier.data()[p] > 0.5f;
+        (is_outlier[i].data()[p] ? bad : good) += 1;
+        (is_outlier[i].data()[p] ? found : lost) += doubted;
+      }
+    return {found / bad, lost / good};
+  }
+};
+
+class EveryConfidence : public testing::TestWithParam<std::pair<Confidence, ConfidenceDirection>> {};
+INSTANTIATE_TEST_SUITE_P(Confidences, EveryConfidence,
+                         testing::Values(std::pair{Confidence::None, ConfidenceDirection::None},
+                                         std::pair{Confidence::High, ConfidenceDirection::HighIsGood},
+                                         std::pair{Confidence::Low, ConfidenceDirection::HighIsBad},
+                                         std::pair{Confidence::Noise, ConfidenceDirection::Uninformative}));
+
+TEST_P(EveryConfidence, PlantedOutliersAreFoundAndInliersKept) {
+  const Planted planted(GetParam().first);
+  const Judgement judgement = planted.judged();
+  const auto [found, lost] = planted.foundAndLost(judgement);
+  EXPECT_GT(found, 0.9);
+  EXPECT_LT(lost, 0.05);
+  EXPECT_NEAR(judgement.model.outlier_share, 0.12, 0.04);
+  EXPECT_EQ(confidenceDirection(judgement.model), GetParam().second);
+}
+
+TEST(Judge, AnInformativeConfidenceFindsMore) {
+  const Planted without(Confidence::None), with(Confidence::High);
+  const auto [found_without, lost_without] = without.foundAndLost(without.judged());
+  const auto [found, lost] = with.foundAndLost(with.judged());
+  EXPECT_LE((1 - found) + lost, (1 - found_without) + lost_without + 0.01);
+}
+
+TEST(Judge, ProbabilitiesStayWithinTheirBoundsAndMissingPixelsAreNotBelieved) {
+  const Planted planted(Confidence::High);
+  const Judgement judgement = planted.judged();
+  for (const JudgedView& view : judgement.judged.views)
+    for (std::size_t p = 0; p < view.depth.size(); ++p) {
+      ASSERT_GE(view.outlier.data()[p], kMinOutlier);
+      ASSERT_LE(view.outlier.data()[p], kMaxOutlier);
+      if (view.depth.data()[p] == kInvalidDepth) {
+        ASSERT_EQ(view.outlier.data()[p], kMaxOutlier);
+      }
+    }
+}
+
+TEST(Judge, UnknownAndConstantConfidencesAreNoTrouble) {
+  Planted planted(Confidence::High);
+  for (View& view : planted.views) view.map.confidence(5, 5) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_GT(planted.foundAndLost(planted.judged()).first, 0.9);
+  for (View& view : planted.views) view.map.confidence = Image<float>(64, 64, 1.0f);
+  const Judgement constant = planted.judged();
+  EXPECT_EQ(confidenceDirection(constant.model), ConfidenceDirection::None);
+  EXPECT_GT(planted.foundAndLost(constant).first, 0.9);
+}
+
+TEST(Judge, CleanViewsAreBelieved) {
+  const Planted planted(Confidence::None, 0.0);
+  const Judgement judgement = planted.judged();
+  EXPECT_LT(judgement.model.outlier_share, 0.05);
+  EXPECT_LT(planted.foundAndLost(judgement).second, 0.03);
+}
+
+TEST(Judge, NoReturnsMeanEmptySpaceAroundAnObjectUnlessToldOtherwise) {
+  const Planted planted(Confidence::None, 0.0);
+  const auto marked = [&](JudgeOptions::NoReturn rule) {
+    JudgeOptions options;
+    options.no_return = rule;
+    const Judgement judgement = planted.judged(options);
+    const Image<std::uint8_t>& mask = judgement.judged.views[0].no_return;
+    EXPECT_EQ(mask(32, 32), 0);
+    return std::count(mask.begin(), mask.end(), 1);
+  };
+  EXPECT_EQ(marked(JudgeOptions::NoReturn::Ignore), 0);
+  EXPECT_GT(marked(JudgeOptions::NoReturn::Free), 100);
+}
+
+TEST(Judge, TheMissRateIsThatOfConfirmedPoints) {
+  Planted planted(Confidence::None, 0.0);
+  Random random(5);
+  for (View& view : planted.views)
+    for (float& d : view.map.depth)
+      if (random.uniform() < 0.3) d = kInvalidDepth;
+  // Points behind the sphere's rim are looked at by views that see nothing there, too: a little more.
+  EXPECT_NEAR(planted.judged().judged.miss_rate, 0.3, 0.08);
+}
+
+TEST(Judge, IsTheSameForOneAndTwoThreads) {
+  const Planted planted(Confidence::High);
+  const auto run = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return planted.judged().judged.views[7].outlier;
+  };
+  EXPECT_EQ(run(1), run(2));
+}
+
+TEST(Judge, OneViewAloneIsJudgedByItsContinuity) {
+  std::vector<View> views = {test::sphereViews(1).front()};
+  const ViewGraph graph(test::headersOf(views), 1.7);
+  const Judgement judgement = judge(views, test::sphereSensor(), graph);
+  EXPECT_EQ(judgement.judged.views.size(), 1u);
+  EXPECT_EQ(judgement.judged.miss_rate, 0.5);
+}
+
+}  // namespace
+}  // namespace vdbfuse
