@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vdbfuse render MESH OUT.png: a picture of a mesh.
+// vdbfuse render MESH|GRID.vdb OUT.png: a picture of a mesh, or of a slice through a grid.
 #include "vdbfuse/report/render.h"
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 
 #include "arguments.h"
 #include "commands.h"
+#include "render_slice.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/io/depth_set.h"
@@ -24,7 +25,7 @@ using Eigen::Vector3d;
 
 struct Request {
   fs::path input, output, reference;
-  std::string from, size = "800x600", color = "shaded", up = "z";
+  std::string from, size = "800x600", color = "shaded", up = "z", slice, grid;
   std::vector<double> eye, look, range;
   bool flat = false, overwrite = false;
   int threads = 0;
@@ -88,10 +89,21 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   return options;
 }
 
+SliceRequest sliceRequest(const Request& request) {
+  if (request.slice.empty()) throw InvalidArgument("--slice", "is required to draw a grid, as --slice z=0");
+  SliceRequest slice{request.input, request.slice, request.grid, std::max(request.width, request.height)};
+  if (!request.range.empty()) slice.low = request.range[0], slice.high = request.range[1];
+  return slice;
+}
+
 void run(const Request& request) {
   const ThreadLimit limit(request.threads);
   if (fs::exists(request.output) && !request.overwrite)
     throw IoError(request.output, "", "no such file yet (or --overwrite)", "one");
+  if (request.input.extension() == ".vdb") {
+    writePng(request.output, renderSlice(sliceRequest(request)));
+    return;
+  }
   const TriangleMesh mesh = readMesh(request.input);
   const RenderOptions options = renderOptions(request, mesh);
   writePng(request.output, render(mesh, camera(request, mesh, options.up), options));
@@ -103,9 +115,10 @@ void addRender(CLI::App& app, Action& action) {
   auto request = std::make_shared<Request>();
   CLI::App* command =
       app.add_subcommand("render",
-                         "Draws a mesh.\n"
-                         "  vdbfuse render mesh.ply picture.png --from scan:0 --color support");
-  command->add_option("mesh", request->input, "mesh to draw")->required();
+                         "Draws a mesh, or a slice through a grid.\n"
+                         "  vdbfuse render mesh.ply picture.png --from scan:0 --color support\n"
+                         "  vdbfuse render grids.vdb slice.png --slice z=0 --grid sigma");
+  command->add_option("mesh", request->input, "mesh to draw, or .vdb file")->required();
   command->add_option("png", request->output, "picture to write")->required();
   auto* from = command->add_option("--from", request->from, "from where a view of a data set was taken")
                    ->type_name("DATASET:VIEW");
@@ -131,6 +144,8 @@ void addRender(CLI::App& app, Action& action) {
       ->delimiter(',')
       ->expected(2)
       ->type_name("low,high");
+  command->add_option("--slice", request->slice, "plane to draw of a .vdb file")->type_name("x|y|z=VALUE");
+  command->add_option("--grid", request->grid, "grid of the .vdb file (default: the first)");
   command->add_flag("--flat", request->flat, "show every triangle as it is");
   auto* size =
       command->add_option("--size", request->size, "of the picture, pixels (with --from: that of the view)")
