@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DSOURCE=... -DFOLDER=... [-DINSTALL_FROM=build folder] [-DARGUMENTS="-D...;..."] -P build.cmake
+# cmake -DSOURCE=... -DFOLDER=... -DSETTINGS=file that sets ARGUMENTS [-DINSTALL_FROM=build folder] -P build.cmake
 # Configures, builds and runs the consumer project in FOLDER; with INSTALL_FROM after installing that build into
 # FOLDER/prefix, and with nothing else known of it.
 cmake_minimum_required(VERSION 3.25)
+include(${SETTINGS})
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
