@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Every third-party package the project uses, found once. TBB comes first: OpenVDB's module defines TBB::tbb
 # itself, and a later find_package(TBB CONFIG) would stop with "targets already defined".
+# Global, so that a project that adds us as a subdirectory can link a static vdbfuse.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 find_package(TBB CONFIG REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 CONFIG REQUIRED)
@@ -16,12 +18,13 @@ find_library(VDBFUSE_LZ4_LIBRARY lz4 REQUIRED)
 
 find_package(embree 3 CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
-pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
+pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET GLOBAL spng)
 find_package(libjpeg-turbo CONFIG REQUIRED)
 
 if(VDBFUSE_WITH_PCL)
   # find_package(PCL) drags in VTK and fails beside OpenVDB; the pkg-config targets work.
-  pkg_check_modules(PCL REQUIRED IMPORTED_TARGET pcl_common pcl_io)
+  pkg_check_modules(PCL_COMMON REQUIRED IMPORTED_TARGET GLOBAL pcl_common)
+  pkg_check_modules(PCL_IO REQUIRED IMPORTED_TARGET GLOBAL pcl_io)
 endif()
 if(VDBFUSE_BUILD_TOOL)
   find_package(CLI11 CONFIG REQUIRED)

@@ -6,6 +6,10 @@ add_library(vdbfuse_flags INTERFACE)
 target_compile_features(vdbfuse_flags INTERFACE cxx_std_20)
 target_compile_options(vdbfuse_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic -Wnon-virtual-dtor
                                                $<$<BOOL:${VDBFUSE_WERROR}>:-Werror>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # g++ 12 warns of std::string's own code at -O3 (its bug 105329).
+  target_compile_options(vdbfuse_flags INTERFACE -Wno-restrict)
+endif()
 if(VDBFUSE_SANITIZE)
   target_compile_options(vdbfuse_flags INTERFACE -fsanitize=${VDBFUSE_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
@@ -35,6 +39,25 @@ function(vdbfuse_module NAME)
   list(TRANSFORM arg_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   target_sources(vdbfuse PRIVATE ${arg_SOURCES})
   target_link_libraries(vdbfuse PRIVATE ${arg_LINK})
+endfunction()
+
+# vdbfuse_library_module(NAME [DEPENDS module...] SOURCES file... [LINK target...] [PUBLIC_LINK target...])
+# A module in a library of its own, vdbfuse_NAME (vdbfuse::NAME), so that who does not use it does not load what it
+# needs. Always shared: the core library opens it when it is asked for.
+function(vdbfuse_library_module NAME)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "DEPENDS;SOURCES;LINK;PUBLIC_LINK")
+  foreach(used IN LISTS arg_DEPENDS)
+    vdbfuse_check_layer(${NAME} ${used})
+  endforeach()
+  set_property(GLOBAL PROPERTY VDBFUSE_DEPENDS_${NAME} ${arg_DEPENDS})
+  add_library(vdbfuse_${NAME} SHARED ${arg_SOURCES})
+  add_library(vdbfuse::${NAME} ALIAS vdbfuse_${NAME})
+  set_target_properties(
+    vdbfuse_${NAME} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} EXPORT_NAME ${NAME}
+                               LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  target_include_directories(vdbfuse_${NAME} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+  target_link_libraries(vdbfuse_${NAME} PUBLIC vdbfuse::vdbfuse ${arg_PUBLIC_LINK}
+                        PRIVATE $<BUILD_INTERFACE:vdbfuse_flags> ${arg_LINK})
 endfunction()
 
 # vdbfuse_module_tests(NAME SOURCES file... [LINK target...])

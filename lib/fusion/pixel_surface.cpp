@@ -12,7 +12,6 @@ namespace vdbfuse {
 namespace {
 
 constexpr int kRadius = 2;
-constexpr int kWindow = (2 * kRadius + 1) * (2 * kRadius + 1) - 1;
 constexpr int kMinNeighbours = 6;
 constexpr double kSteepestSlope = 2.75;  // tan 70°
 
@@ -21,6 +20,7 @@ struct PlaneSums {
   Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
   int count = 0;
+  int valid = 0;  // neighbours with a depth, whether they continue the surface or not
   void add(int dx, int dy, double inverse_depth) {
     const Eigen::Vector3d row(1, dx, dy);
     normal_matrix += row * row.transpose();
@@ -41,7 +41,8 @@ class SurfaceAnalysis {
     sums.add(0, 0, 1.0 / d);
     gather(x, y, sums);
     const int neighbours = sums.count - 1;
-    out.continuity(x, y) = static_cast<float>(neighbours) / kWindow;
+    out.continuity(x, y) =
+        static_cast<float>(neighbours) / static_cast<float>(std::max(sums.valid, kMinNeighbours));
     if (neighbours < kMinNeighbours) return;
     const Eigen::Vector3d plane = sums.normal_matrix.ldlt().solve(sums.right_side);
     if (const auto normal = cameraNormal(x, y, plane)) setNormal(x, y, *normal, out);
@@ -57,7 +58,9 @@ class SurfaceAnalysis {
         if ((dx == 0 && dy == 0) || !depth_.contains(x + dx, y + dy)) continue;
         const float other = depth_(x + dx, y + dy);
         const double reach = noise + slope * std::max(std::abs(dx), std::abs(dy));
-        if (other != kInvalidDepth && std::abs(other - d) <= reach) sums.add(dx, dy, 1.0 / other);
+        if (other == kInvalidDepth) continue;
+        ++sums.valid;
+        if (std::abs(other - d) <= reach) sums.add(dx, dy, 1.0 / other);
       }
     }
   }

@@ -6,6 +6,7 @@
 
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/mvsnet.h"
+#include "vdbfuse/io/pcd.h"
 #include "vdbfuse/io/rgbd_folder.h"
 
 namespace vdbfuse {
@@ -70,6 +71,11 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
        "confidence/00000000.pfm   optional\n"
        "images/00000000.png|jpg   optional\n",
        detectMvsnet, readMvsnet},
+      {"pcd", "organised point clouds of the Point Cloud Library, one file or a folder",
+       "NAME.pcd   ascii, binary or compressed; x y z as 4-byte floats in the sensor's frame; HEIGHT above "
+       "1;\n"
+       "           VIEWPOINT is world_from_camera\n",
+       detectPcd, readPcd},
   };
   return formats;
 }

@@ -1,21 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 // The heart of the minimum cut: two forests of shortest paths that grow towards each other.
 //
-// Vocabulary. The *source forest* holds every node that residual arcs lead to from a node with an excess, as
-// far as it has grown; the *sink forest* every node from which residual arcs lead to a node with a deficit.
-// Roots are the nodes with an excess (a deficit), at level 1 at the start; a child is one level deeper than
-// its parent. The forests grow in turn, a level at a time. Where a residual arc leads from the source forest
-// to the sink forest (a *bridge*) it is filled at once: its head gets an excess, its tail a deficit. Both
-// travel rootwards, deepest level first, so that what comes from many bridges meets and travels together. A
-// node whose arc to its parent is filled, and a root that is used up, is an *orphan*: it takes the nearest
-// other parent, shallowest level first, or leaves the forest. An excess that cannot leave the sink forest so
-// ends in a node that changes forest and becomes a root there; the same for deficits.
+// The *source forest* holds every node that a residual path leads to from a node with an excess, as far as it
+// has grown; the *sink forest* every node from which a residual path leads to a node with a deficit. Roots
+// are the nodes with an excess (a deficit), at level 1 at the start; a child is one level deeper than its
+// parent. The forests grow a level at a time. Where they meet, a residual arc (a *bridge*) leads from the
+// source forest to the sink forest, and as much is pushed along it as the path from the root of its tail can
+// supply. In the sink forest this excess travels rootwards, deepest level first, so that what comes from many
+// bridges travels together. A node whose arc to its parent is filled, and a root that is used up, is an
+// *orphan*: it takes the nearest other parent or leaves the forest. An excess that cannot get on then ends in
+// a node that leaves the sink forest and becomes a root of the source forest, close to where it will be
+// needed next.
+//
+// This is one-sided on purpose. If bridges were filled without regard to the supply, deficits would travel in
+// the source forest just so, but then wide edges between small terminals can send the same excess to and fro
+// for ever. As it is, no deficit is ever made: levels in the sink forest stay lower bounds of the distance to
+// a deficit, below the number of nodes; between two of its growths it only loses nodes, or they sink; and the
+// source forest grows anew only so often as it loses them. So the loop ends, whatever the capacities are.
+//
+// Invariants between two steps, from which all else follows (D: level of a forest's frontier; the forest that
+// is growing has the frontier one deeper than the level it is scanning):
+//   1. Excess is only in the source forest, deficit only in the sink forest.
+//   2. A node on a level above the frontier (and already scanned, on the level being scanned) has no residual
+//   arc out of
+//      its forest (source forest), no residual arc from outside to it (sink forest).
+//   3. A residual arc does not lead to a level more than one deeper (source forest), or from one (sink
+//   forest).
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "level_queue.h"
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/mincut/network.h"
 #include "vdbfuse/mincut/solve.h"
@@ -31,47 +49,14 @@ enum class Orientation : std::uint8_t { AsGiven, Reversed };
 
 constexpr Tree opposite(Tree tree) { return tree == Tree::Source ? Tree::Sink : Tree::Source; }
 
-/// Nodes waiting to be processed, by level, each with an arc that goes with it. A node may wait more than
-/// once.
-class LevelQueue {
- public:
-  struct Item {
-    std::uint32_t node;
-    std::uint32_t arc;
-  };
-  bool empty() const { return size_ == 0; }
-  void push(Item item, std::int32_t level);
-  /// Takes an item off the lowest (highest) level. REQUIRES: not empty.
-  Item popLowest();
-  Item popHighest();
-  /// Level of the item that was taken last.
-  std::int32_t level() const { return level_; }
-  std::size_t bytes() const;
-
- private:
-  struct Link {
-    Item item;
-    std::uint32_t next;
-  };
-  static constexpr std::uint32_t kEnd = 0xffffffff;
-  Item pop(std::int32_t level);
-
-  std::vector<std::uint32_t> tops_;  ///< by level: first of its links, or kEnd
-  std::vector<Link> links_;          ///< emptied whenever the queue is
-  std::size_t size_ = 0;
-  std::int32_t lowest_ = 0;
-  std::int32_t highest_ = 0;
-  std::int32_t level_ = 0;
-};
-
 class Forests {
  public:
   Forests(const Network& network, Orientation orientation, const Progress& progress);
 
   /// Grows both forests until one cannot grow any more: the flow is maximum.
   void maximiseFlow();
-  /// Grows this forest alone to its end. After maximiseFlow() nothing is left to meet: it ends as the set of
-  /// all nodes that its roots are connected with.
+  /// After maximiseFlow(): puts into this forest all nodes that its roots are connected with. The forests do
+  /// not meet any more, so that only nodes in neither are concerned.
   template <Tree T>
   void exhaust();
 
@@ -114,7 +99,12 @@ class Forests {
   }
 
   void settleNeighbours();
-  void turnBack();
+  template <Tree T>
+  double reluctance() const;
+  template <Tree T>
+  bool reaches(std::uint32_t node) const;
+  template <Tree T>
+  void flood(std::uint32_t node);
   template <Tree T>
   void place(std::uint32_t node, std::uint32_t parent, std::int32_t depth);
   template <Tree T>
@@ -146,20 +136,21 @@ class Forests {
   template <Tree T>
   void release(std::uint32_t node);
   void tick();
+  void turnBack();
+  std::size_t bytes() const;
 
   const Network& network_;
   Orientation orientation_;
   const Progress& progress_;
   std::vector<std::uint32_t> residual_;
-  std::vector<std::int64_t> excess_;  ///< terminal + inflow − outflow
-  std::vector<std::uint32_t>
-      parent_;  ///< arc to the parent, kRoot or kOrphan; means nothing where the level is 0
-  std::vector<std::int32_t> level_;  ///< > 0: source forest, < 0: sink forest, 0: neither
+  std::vector<std::int64_t> excess_;   ///< terminal + inflow − outflow
+  std::vector<std::uint32_t> parent_;  ///< arc to the parent, kRoot or kOrphan
+  std::vector<std::int32_t> level_;    ///< > 0: source forest, < 0: sink forest, 0: neither
   std::array<Frontier, 2> frontiers_;
-  LevelQueue loads_;
-  LevelQueue orphans_;
-  std::vector<std::uint32_t> detached_;
-  std::vector<std::uint32_t> loaded_;
+  LevelQueue loads_;                     ///< nodes of the sink forest with an excess to push on
+  LevelQueue orphans_;                   ///< of the forest that is being mended
+  std::vector<std::uint32_t> detached_;  ///< orphans that could not keep their level
+  std::vector<std::uint32_t> loaded_;    ///< orphans with an excess
   SolveStatistics statistics_;
   std::uint64_t ticks_ = 0;
   std::uint64_t in_forests_ = 0;

@@ -10,6 +10,7 @@ using mincut::Forests;
 using mincut::Orientation;
 using mincut::Tree;
 
+/// The source forest should be the one with fewer roots (see forests.h).
 Orientation betterOrientation(const Network& network) {
   std::int64_t supplies_more = 0;
   for (std::uint32_t node = 0; node < network.nodeCount(); ++node) {

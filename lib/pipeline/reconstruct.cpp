@@ -87,12 +87,10 @@ Reconstruction reconstruct(const ViewSequence& sequence, const ReconstructOption
   const SensorModel sensor = calibrateSensor(views, graph, depths, options, result.calibration, progress);
 
   timer.start("judge");
-  JudgedViews judged =
-      judgeViews(std::move(views), sensor, graph, options, result.calibration, progress);  // ε, w
-
-  const Box domain = options.domain ? *options.domain : supportedDomain(judged);
-  widenRange(judged, domain);
-  result.calibration.near = judged.sensor.near, result.calibration.far = judged.sensor.far;
+  const Judgement judgement =
+      judgeViews(std::move(views), sensor, graph, options, result.calibration, progress);  // ε, w, domain
+  const JudgedViews& judged = judgement.judged;
+  const Box& domain = judgement.domain;
   const GridFrame frame = chooseFrame(judged, domain, depths, options);
 
   if (options.method == Method::Tsdf) {

@@ -90,11 +90,13 @@ SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& gra
   return sensor;
 }
 
-JudgedViews judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
-                       const ReconstructOptions& options, CalibrationReport& report,
-                       const Progress& progress) {
-  Judgement judgement = judge(std::move(views), sensor, graph, options.judge, progress);
+Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
+                     const ReconstructOptions& options, CalibrationReport& report, const Progress& progress) {
+  JudgeOptions judge_options = options.judge;
+  judge_options.domain = options.domain;
+  Judgement judgement = judge(std::move(views), sensor, graph, judge_options, progress);
   report.miss_rate = judgement.judged.miss_rate;
+  report.near = judgement.judged.sensor.near, report.far = judgement.judged.sensor.far;
   report.outlier_share = judgement.model.outlier_share;
   report.confidence = confidenceDirection(judgement.model);
   if (options.outliers) {
@@ -103,7 +105,7 @@ JudgedViews judgeViews(std::vector<View> views, const SensorModel& sensor, const
     for (JudgedView& view : judgement.judged.views)
       std::fill(view.outlier.begin(), view.outlier.end(), outlier);
   }
-  return std::move(judgement.judged);
+  return judgement;
 }
 
 GridFrame chooseFrame(const JudgedViews& judged, const Box& domain, const DepthStatistics& depths,

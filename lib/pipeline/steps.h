@@ -19,9 +19,8 @@ SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& gra
                             const DepthStatistics& depths, const ReconstructOptions& options,
                             CalibrationReport& report, const Progress& progress);
 
-JudgedViews judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
-                       const ReconstructOptions& options, CalibrationReport& report,
-                       const Progress& progress);
+Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
+                     const ReconstructOptions& options, CalibrationReport& report, const Progress& progress);
 
 /// Voxels at integer multiples of the voxel size from the world's origin.
 GridFrame chooseFrame(const JudgedViews& judged, const Box& domain, const DepthStatistics& depths,

@@ -167,22 +167,20 @@ ViewHeader cameraLookingAt(const Vector3d& eye, const Vector3d& target, const Ve
   return {"", camera, lookAt(eye, target, up)};
 }
 
-ViewHeader framingCamera(const Box& box, const Vector3d& up, int width, int height) {
-  const Vector3d front = frontFor(up), right = up.cross(front);
+ViewHeader framingCamera(const TriangleMesh& mesh, const Vector3d& up, int width, int height) {
+  constexpr double kMargin = 1.06;
+  const Vector3d center = boundingBox(mesh).center(), front = frontFor(up), right = up.cross(front);
   const Vector3d direction = (front + 0.6 * right + 0.35 * up).normalized();
-  ViewHeader view = cameraLookingAt(box.center() + direction, box.center(), up, width, height);
+  ViewHeader view = cameraLookingAt(center + direction, center, up, width, height);
   const auto& camera = std::get<Pinhole>(view.projection);
-  // As near as all eight corners allow.
+  // As near as all vertices allow.
   double distance = 0;
-  for (int c = 0; c < 8; ++c) {
-    const Vector3d corner = box.corner(static_cast<Box::CornerType>(c)) - box.center();
-    const Vector3d p = view.world_from_camera.linear().transpose() * corner;
-    constexpr double kMargin = 1.06;
-    const double x = kMargin * std::abs(p.x()) * 2 * camera.fx / width;
-    const double y = kMargin * std::abs(p.y()) * 2 * camera.fy / height;
-    distance = std::max(distance, std::max(x, y) - p.z());
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const Vector3d p = view.world_from_camera.linear().transpose() * (vertex.cast<double>() - center);
+    const double x = 2 * camera.fx / width * std::abs(p.x()), y = 2 * camera.fy / height * std::abs(p.y());
+    distance = std::max(distance, kMargin * std::max(x, y) - p.z());
   }
-  view.world_from_camera.translation() = box.center() + distance * direction;
+  view.world_from_camera.translation() = center + distance * direction;
   return view;
 }
 

@@ -17,7 +17,7 @@ double capsuleDistance(const Vector3d& p, const Vector3d& from, const Vector3d& 
 
 // Measures of the figure, in parts of its height; feet at z = 0, front towards −y.
 constexpr double kLegRadius = 0.02, kLegX = 0.08, kHip = 0.42;
-constexpr double kTorsoRounding = 0.03;
+constexpr double kTorsoRounding = 0.12;
 constexpr double kArmRadius = 0.03;
 constexpr double kHeadRadius = 0.1;
 const Vector3d kTorsoCenter{0, 0, 0.6}, kTorsoHalf{0.16, 0.15, 0.2};

@@ -95,6 +95,19 @@ void writeGrids(const std::filesystem::path& path, const std::vector<const Scala
   }
 }
 
+std::vector<std::string> gridNames(const std::filesystem::path& path) {
+  initialiseOpenVdb();
+  std::vector<std::string> names;
+  try {
+    openvdb::io::File file(path.string());
+    file.open();
+    for (auto grid = file.beginName(); grid != file.endName(); ++grid) names.push_back(*grid);
+  } catch (const std::exception& error) {
+    throw IoError(path, std::string("cannot be read: ") + error.what());
+  }
+  return names;
+}
+
 ScalarGrid readGrid(const std::filesystem::path& path, const std::string& name) {
   initialiseOpenVdb();
   openvdb::GridBase::Ptr base;

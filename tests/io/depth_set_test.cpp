@@ -57,7 +57,7 @@ TEST(DepthSet, NamedFormatOverridesWhatIsFound) {
   }
   options.format = "colmap";
   EXPECT_EQ(messageOf<InvalidArgument>([&] { readDepthSet(folder.path(), options); }),
-            "format: expected one of rgbd, mvsnet, found 'colmap'");
+            "format: expected one of rgbd, mvsnet, pcd, found 'colmap'");
 }
 
 TEST(DepthSet, UnknownFolderSaysWhatEachFormatMissed) {
@@ -65,16 +65,17 @@ TEST(DepthSet, UnknownFolderSaysWhatEachFormatMissed) {
   EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder.path()); }),
             folder.path().string() +
                 ": expected a data set of a known format, found none (rgbd: no *.depth.png; mvsnet: no "
-                "cams/*_cam.txt and no depth_est/*.pfm)");
+                "cams/*_cam.txt and no depth_est/*.pfm; pcd: no *.pcd)");
 }
 
 TEST(DepthSet, FileOrNothingInsteadOfAFolderIsSaid) {
   const TemporaryFolder folder;
   writeText(folder / "file", "x");
-  EXPECT_EQ(
-      messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
-      (folder / "file").string() +
-          ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a folder)");
+  EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
+            (folder / "file").string() +
+                ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a "
+                "folder; pcd: not "
+                "a folder and no .pcd file)");
   ReadOptions options;
   for (const char* name : {"rgbd", "mvsnet"}) {
     options.format = name;

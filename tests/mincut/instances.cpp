@@ -60,7 +60,7 @@ double terminalValue(Family family, const Grid& grid, const Cell& cell, Random& 
     case Family::Seeds:
       return border ? 6.0 : (distance < -0.15 * 128.0 ? -6.0 : 0.0);
     case Family::LowContrast:
-      return border || random.uniform() < 0.01 ? 60.0 * std::clamp(distance, -1.0, 1.0) : 0.0;
+      return border || random.uniform() < 0.04 ? 60.0 * std::clamp(distance, -1.0, 1.0) : 0.0;
     case Family::OneSidedScan:
       return oneSided(grid, cell, distance, random);
     case Family::OneSidedGap:

@@ -23,7 +23,7 @@ enum class Family {
   DenseNoisy,    ///< a noisy signed value in every cell
   Carving,       ///< free space strong, the inside only a weak ballooning
   Seeds,         ///< nothing but the border of the cube and a small ball in the middle: long paths
-  LowContrast,   ///< edges nearly alike, a value in one cell of a hundred
+  LowContrast,   ///< edges nearly alike, a value in one cell of twenty-five
   OneSidedScan,  ///< seen from one side; everything behind the surface is weakly inside, its edges at their
                  ///< highest
   OneSidedGap,   ///< the mirror image: what nobody saw is weakly outside

@@ -77,11 +77,12 @@ TEST(Info, BadInputIsOneLineAndLeavesNothingBehind) {
   const TemporaryFolder folder;
   writeScan(folder / "scan");
   writeText(folder / "scan/depth_est/00000001.pfm", "Pf\n8 6\n-1\n");
-  const ToolResult run = runTool("info " + quoted(folder / "scan") + " --json " + quoted(folder / "info.json"));
+  const ToolResult run =
+      runTool("info " + quoted(folder / "scan") + " --json " + quoted(folder / "info.json"));
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(run.err, "vdbfuse: " + (folder / "scan/depth_est/00000001.pfm").string() +
-                           ": byte 10: expected 202 bytes for 8x6 pixels, found the end of the file\n");
+                         ": byte 10: expected 202 bytes for 8x6 pixels, found the end of the file\n");
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 

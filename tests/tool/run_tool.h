@@ -23,7 +23,8 @@ inline std::string quoted(const std::filesystem::path& path) { return "'" + path
 inline ToolResult runTool(const std::string& arguments) {
   const TemporaryFolder streams;
   const std::filesystem::path out = streams / "out", err = streams / "err";
-  const std::string command = quoted(VDBFUSE_TOOL) + " " + arguments + " >" + quoted(out) + " 2>" + quoted(err);
+  const std::string command =
+      quoted(VDBFUSE_TOOL) + " " + arguments + " >" + quoted(out) + " 2>" + quoted(err);
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
 }
@@ -32,8 +33,8 @@ inline ToolResult runTool(const std::string& arguments) {
 inline ToolResult runTool(const TemporaryFolder& folder, const std::string& arguments) {
   const TemporaryFolder streams;
   const std::filesystem::path out = streams / "out", err = streams / "err";
-  const std::string command = "cd " + quoted(folder.path()) + " && " + quoted(VDBFUSE_TOOL) + " " + arguments + " >" +
-                              quoted(out) + " 2>" + quoted(err);
+  const std::string command = "cd " + quoted(folder.path()) + " && " + quoted(VDBFUSE_TOOL) + " " +
+                              arguments + " >" + quoted(out) + " 2>" + quoted(err);
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
 }

@@ -18,10 +18,13 @@ struct FuseContext {
   TopologyReport topology;
 };
 
-/// One JSON object: version, command, options (resolved), input, calibration, grid, energy, cut, mesh, steps, memory.
-void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result, const FuseContext& context);
+/// One JSON object: version, command, options (resolved), input, calibration, grid, energy, cut, mesh, steps,
+/// memory.
+void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result,
+                   const FuseContext& context);
 
 /// A few lines on stdout.
-void printFuseReport(const Reconstruction& result, const FuseContext& context, const std::filesystem::path& output);
+void printFuseReport(const Reconstruction& result, const FuseContext& context,
+                     const std::filesystem::path& output);
 
 }  // namespace vdbfuse::tool

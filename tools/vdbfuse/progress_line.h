@@ -5,8 +5,8 @@
 
 namespace vdbfuse::tool {
 
-/// Shows the running step with its share and the time left on one line of stderr, when that is a terminal, and stops
-/// the run when the user presses Ctrl-C.
+/// Shows the running step with its share and the time left on one line of stderr, when that is a terminal,
+/// and stops the run when the user presses Ctrl-C.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);

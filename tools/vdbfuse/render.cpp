@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vdbfuse render MESH OUT.png: a picture of a mesh.
+// vdbfuse render MESH|GRID.vdb OUT.png: a picture of a mesh, or of a slice through a grid.
 #include "vdbfuse/report/render.h"
 
 #include <CLI/CLI.hpp>
@@ -9,11 +9,13 @@
 
 #include "arguments.h"
 #include "commands.h"
+#include "render_slice.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/io/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/png.h"
+#include "vdbfuse/mesh/closest_point.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -22,8 +24,8 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 struct Request {
-  fs::path input, output;
-  std::string from, size = "800x600", color = "shaded", up = "z";
+  fs::path input, output, reference;
+  std::string from, size = "800x600", color = "shaded", up = "z", slice, grid;
   std::vector<double> eye, look, range;
   bool flat = false, overwrite = false;
   int threads = 0;
@@ -57,10 +59,20 @@ ViewHeader viewOf(const Request& request) {
 ViewHeader camera(const Request& request, const TriangleMesh& mesh, const Vector3d& up) {
   if (!request.from.empty()) return viewOf(request);
   if (mesh.triangles.empty()) throw IoError(request.input, "", "a mesh", "no triangles");
-  const Box box = boundingBox(mesh);
-  if (request.eye.empty()) return framingCamera(box, up, request.width, request.height);
-  const Vector3d target = request.look.empty() ? Vector3d(box.center()) : vector(request.look);
+  if (request.eye.empty()) return framingCamera(mesh, up, request.width, request.height);
+  const Vector3d target = request.look.empty() ? Vector3d(boundingBox(mesh).center()) : vector(request.look);
   return cameraLookingAt(vector(request.eye), target, up, request.width, request.height);
+}
+
+// Distance of each vertex from the surface of `reference`.
+std::vector<float> distances(const TriangleMesh& mesh, const TriangleMesh& reference) {
+  const ClosestPoint surface(reference);
+  std::vector<float> result(mesh.vertices.size());
+  parallelFor(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result[i] = static_cast<float>(surface.query(mesh.vertices[i].cast<double>()).distance);
+  });
+  return result;
 }
 
 RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
@@ -68,16 +80,30 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   options.up = axisNamed(request.up);
   if (request.color == "normal") options.coloring = MeshColoring::Normal;
   if (request.color == "support") options.coloring = MeshColoring::Support;
-  if (request.color == "error") options.coloring = MeshColoring::Values, options.values = mesh.support;
+  if (request.color == "error") {
+    options.coloring = MeshColoring::Values;
+    options.values = distances(mesh, readMesh(request.reference));
+  }
   if (request.flat) options.normals = RenderOptions::Normals::Flat;
   if (!request.range.empty()) options.low = request.range[0], options.high = request.range[1];
   return options;
+}
+
+SliceRequest sliceRequest(const Request& request) {
+  if (request.slice.empty()) throw InvalidArgument("--slice", "is required to draw a grid, as --slice z=0");
+  SliceRequest slice{request.input, request.slice, request.grid, std::max(request.width, request.height)};
+  if (!request.range.empty()) slice.low = request.range[0], slice.high = request.range[1];
+  return slice;
 }
 
 void run(const Request& request) {
   const ThreadLimit limit(request.threads);
   if (fs::exists(request.output) && !request.overwrite)
     throw IoError(request.output, "", "no such file yet (or --overwrite)", "one");
+  if (request.input.extension() == ".vdb") {
+    writePng(request.output, renderSlice(sliceRequest(request)));
+    return;
+  }
   const TriangleMesh mesh = readMesh(request.input);
   const RenderOptions options = renderOptions(request, mesh);
   writePng(request.output, render(mesh, camera(request, mesh, options.up), options));
@@ -89,9 +115,10 @@ void addRender(CLI::App& app, Action& action) {
   auto request = std::make_shared<Request>();
   CLI::App* command =
       app.add_subcommand("render",
-                         "Draws a mesh.\n"
-                         "  vdbfuse render mesh.ply picture.png --from scan:0 --color support");
-  command->add_option("mesh", request->input, "mesh to draw")->required();
+                         "Draws a mesh, or a slice through a grid.\n"
+                         "  vdbfuse render mesh.ply picture.png --from scan:0 --color support\n"
+                         "  vdbfuse render grids.vdb slice.png --slice z=0 --grid sigma");
+  command->add_option("mesh", request->input, "mesh to draw, or .vdb file")->required();
   command->add_option("png", request->output, "picture to write")->required();
   auto* from = command->add_option("--from", request->from, "from where a view of a data set was taken")
                    ->type_name("DATASET:VIEW");
@@ -107,13 +134,18 @@ void addRender(CLI::App& app, Action& action) {
       ->type_name("x,y,z")
       ->needs(eye);
   command->add_option("--up", request->up, "axis that points up")->check(axisCheck())->capture_default_str();
-  command->add_option("--color", request->color, "error: the values that a PLY file carries as `quality`")
+  command
+      ->add_option("--color", request->color,
+                   "support: agreeing views, orange where invented; error: distance from --reference")
       ->check(CLI::IsMember({"shaded", "normal", "support", "error"}))
       ->capture_default_str();
+  command->add_option("--reference", request->reference, "mesh that --color error measures from");
   command->add_option("--range", request->range, "values at the two ends of the colours")
       ->delimiter(',')
       ->expected(2)
       ->type_name("low,high");
+  command->add_option("--slice", request->slice, "plane to draw of a .vdb file")->type_name("x|y|z=VALUE");
+  command->add_option("--grid", request->grid, "grid of the .vdb file (default: the first)");
   command->add_flag("--flat", request->flat, "show every triangle as it is");
   auto* size =
       command->add_option("--size", request->size, "of the picture, pixels (with --from: that of the view)")
@@ -122,6 +154,8 @@ void addRender(CLI::App& app, Action& action) {
   command->add_option("--threads", request->threads, "0: all processors")->capture_default_str();
   command->add_flag("--overwrite", request->overwrite, "replace an existing picture");
   command->callback([request, size, &action] {
+    if (request->color == "error" && request->reference.empty())
+      throw CLI::RequiredError("--color error: --reference MESH");
     if (request->from.empty() || size->count() > 0)
       std::tie(request->width, request->height) = parseSize(request->size);
     action = [request] { run(*request); };

@@ -12,7 +12,9 @@ struct PixelSurface {
   Image<Eigen::Vector3f> normal;
   /// Cosine between normal and optic ray; 0 where there is no normal.
   Image<float> incidence;
-  /// Share of the 5×5 neighbourhood that continues the same surface, in [0, 1]; 0 at invalid pixels.
+  /// Share of the measured pixels of the 5×5 neighbourhood that continue the same surface, in [0, 1]: holes
+  /// do not count against a sparse sensor. Fewer than six measured neighbours count as six. 0 at invalid
+  /// pixels.
   Image<float> continuity;
 };
 

@@ -1,53 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which pixel to believe: the outlier probability of each pixel, inferred from the other views without a
-// parameter (step 1 of the two: agreement, continuity and confidence).
+// parameter.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/fusion/view_graph.h"
+#include "vdbfuse/geometry/box.h"
 #include "vdbfuse/sensor/judged_view.h"
 
 namespace vdbfuse {
 
-/// Learned probabilities of the two classes, by observation.
-struct ReliabilityModel {
-  static constexpr int kAgreements = 6;    ///< neighbour views that agree: 0 … 4, 5 or more
-  static constexpr int kContinuities = 4;  ///< share of the 5×5 neighbourhood on the same surface
-  static constexpr int kCells = kAgreements * kContinuities;
-  static constexpr int kConfidences =
-      20;  ///< quantile bins of the confidence; all in bin 0 when there is none
-
-  double outlier_share = 0;
-  /// Posterior probability of an outlier: [confidence bin][agreement · kContinuities + continuity].
-  std::array<std::array<double, kCells>, kConfidences> outlier_given{};
-  /// ε(c): outlier share of each confidence bin, lowest confidence first.
-  std::array<double, kConfidences> outlier_by_confidence{};
-  /// Upper ends of the confidence bins; empty when there is no confidence.
-  std::vector<float> confidence_bins;
-};
-
 /// What the data say of their confidence.
 enum class ConfidenceDirection { None, HighIsGood, HighIsBad, Uninformative };
+
+/// What was learned of a data set's pixels.
+struct ReliabilityModel {
+  static constexpr std::size_t kConfidences = 20;  ///< quantile bins of the confidence
+  double outlier_share = 0;
+  /// Upper ends of the confidence bins, the last one left out; empty when there is no confidence.
+  std::vector<float> confidence_bins;
+  /// ε(c): outlier share of each confidence bin, lowest confidence first; all equal without confidence.
+  std::array<double, kConfidences> outlier_by_confidence{};
+};
+
 ConfidenceDirection confidenceDirection(const ReliabilityModel& model);
 
 struct Judgement {
   JudgedViews judged;
   ReliabilityModel model;
+  Box domain;  ///< the one given, or supportedDomain() of the first pass
 };
 
 struct JudgeOptions {
   NeighbourOptions neighbours;
+  /// What a missing depth around an object means. Auto: free space when it fills most of most images'
+  /// borders.
   enum class NoReturn { Ignore, Free, Auto } no_return = NoReturn::Auto;
+  /// The second pass, leave-one-out denial; costs about as much as the first.
+  enum class Denial { Skip, Examine } denial = Denial::Examine;
+  /// World box of the reconstruction; default: found after the first pass.
+  std::optional<Box> domain;
 };
 
-/// Two-class EM over two observations that are independent given the class: the confidence (20 bins), and a
-/// cell of agreement (neighbour views whose depth at the projected point is within 3 combined standard
-/// deviations and whose normal is within 45°; a missing normal vetoes nothing) and continuity (4 bins).
-/// Histograms, no parametric form; starts from "two or more agree and the surface continues". Without
-/// confidence, agreement and continuity are taken as the two observations. Takes the views' images over.
+/// Two-class EM (inlier, outlier) over observations that are independent given the class; histograms, no
+/// parametric form:
+///  1. the confidence (20 quantile bins), and a cell of *agreement* (neighbour views that measured the same
+///  point, with
+///     normals within 45°), *contradiction* (neighbours that see past it) and *continuity* (share of the 5×5
+///     neighbourhood on the same surface). Without confidence, continuity is an observation of its own.
+///  2. *denial*: the smallest evidence of all other views where the pixel claims free space.
+/// Starts from: two or more agree and the surface continues = inlier; contradicted by more than agree =
+/// outlier; nobody speaks for or against = undecided, because only evidence against condemns. Takes the
+/// views' images over. `sensor`: its noise and range. Throws InvalidArgument when nothing is supported.
 Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
                 const JudgeOptions& options = {}, const Progress& progress = {});
 

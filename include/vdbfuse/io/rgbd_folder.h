@@ -3,8 +3,8 @@
 //
 //   NAME.depth.png             16-bit grey; millimetres unless told otherwise; 0 and 65535 are invalid
 //   NAME.pose.txt              4×4 or 3×4 world_from_camera, metres
-//   NAME.color.png|jpg|jpeg    optional, taken as given (a picture that is not registered to the depth is not noticed)
-//   *intrinsics*.txt           3×3 matrix of the depth camera, the same for all frames
+//   NAME.color.png|jpg|jpeg    optional, taken as given (a picture that is not registered to the depth is not
+//   noticed) *intrinsics*.txt           3×3 matrix of the depth camera, the same for all frames
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,9 @@ namespace vdbfuse {
 /// Whether `path` is a folder of this layout, and if not, what it lacks.
 Detection detectRgbdFolder(const std::filesystem::path& path);
 
-/// Reads poses, intrinsics and sizes at once, images when they are asked for. Frames are ordered by name. Throws
-/// IoError: a depth map without a pose, a pose that is not a rotation (kRotationTolerance) or not finite, intrinsics
-/// that are missing, several or short.
+/// Reads poses, intrinsics and sizes at once, images when they are asked for. Frames are ordered by name.
+/// Throws IoError: a depth map without a pose, a pose that is not a rotation (kRotationTolerance) or not
+/// finite, intrinsics that are missing, several or short.
 DepthSet readRgbdFolder(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace vdbfuse

@@ -51,10 +51,13 @@ struct MinCut {
 };
 
 /// Finds a minimum cut. Deterministic: the labels do not depend on the number of threads (nor on the order of
-/// nodes and edges, ties being defined). Excesses incremental breadth-first search: Goldberg, Hed, Kaplan,
-/// Tarjan, Werneck, "Maximum flows by incremental breadth-first search", ESA 2011, and Goldberg, Hed, Kaplan,
-/// Kohli, Tarjan, Werneck, "Faster and more dynamic maximum flow by incremental breadth-first search", ESA
-/// 2015. Throws Cancelled when `progress` asks to stop.
+/// nodes and edges, ties being defined). Throws Cancelled when `progress` asks to stop.
+///
+/// Incremental breadth-first search with excesses, after Goldberg, Hed, Kaplan, Tarjan, Werneck, "Maximum
+/// flows by incremental breadth-first search", ESA 2011, and Goldberg, Hed, Kaplan, Kohli, Tarjan, Werneck,
+/// "Faster and more dynamic maximum flow by incremental breadth-first search", ESA 2015. Two things differ:
+/// no more is pushed from the source side than it can supply, so that the loop ends for all capacities, and
+/// forests are mended in batches.
 MinCut solve(const Network& network, const SolveOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -41,9 +41,9 @@ std::vector<std::string> validate(const RenderOptions& options, const TriangleMe
 /// threads. Throws InvalidArgument listing all of validate(options, mesh).
 Image<Rgb8> render(const TriangleMesh& mesh, const ViewHeader& view, const RenderOptions& options = {});
 
-/// A pinhole camera that shows all of `box` from the front, a little from its right and from above. REQUIRES:
-/// `box` not empty; `up` a unit vector; the front is frontFor(up).
-ViewHeader framingCamera(const Box& box, const Eigen::Vector3d& up, int width, int height);
+/// A pinhole camera that just shows all of the mesh, from the front (frontFor(up)), a little from its right
+/// and from above. REQUIRES: a mesh with extent; `up` a unit vector.
+ViewHeader framingCamera(const TriangleMesh& mesh, const Eigen::Vector3d& up, int width, int height);
 
 /// A camera with a field of view of 40° along the longer side of its image.
 ViewHeader cameraLookingAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,

@@ -93,4 +93,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<const Scala
 /// the background value, or kUnknown in a level set. Throws IoError.
 ScalarGrid readGrid(const std::filesystem::path& path, const std::string& name = {});
 
+/// Names of the grids in a file, in its order. Throws IoError.
+std::vector<std::string> gridNames(const std::filesystem::path& path);
+
 }  // namespace vdbfuse

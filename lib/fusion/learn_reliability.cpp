@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fusion/learn_reliability.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fusion/two_class_em.h"
+
+namespace vdbfuse {
+namespace {
+
+using T = PixelTestimony;
+constexpr std::size_t kConfidences = ReliabilityModel::kConfidences;
+// Everything observed of a pixel: confidence, agreement, contradiction, continuity, denial.
+constexpr std::size_t kOutcomes =
+    kConfidences * T::kAgreements * T::kContradictions * T::kContinuities * T::kDenials;
+
+std::size_t outcome(std::size_t confidence, const T& t) {
+  return (((confidence * T::kAgreements + t.agreement) * T::kContradictions + t.contradiction) *
+              T::kContinuities +
+          t.continuity) *
+             T::kDenials +
+         t.denial;
+}
+
+struct Outcome {
+  std::size_t confidence;
+  T testimony;
+};
+
+Outcome outcomeAt(std::size_t index) {
+  const auto take = [&index](std::size_t size) {
+    const std::size_t value = index % size;
+    index /= size;
+    return static_cast<std::uint8_t>(value);
+  };
+  Outcome result;
+  result.testimony.denial = take(T::kDenials);
+  result.testimony.continuity = take(T::kContinuities);
+  result.testimony.contradiction = take(T::kContradictions);
+  result.testimony.agreement = take(T::kAgreements);
+  result.confidence = index;
+  return result;
+}
+
+// Only evidence against condemns: a pixel of which nobody knows anything stays undecided.
+double firstGuess(const T& t) {
+  constexpr std::uint8_t kContinues = 2, kDenied = 3;
+  constexpr double kUndecided = 0.5;
+  if (t.agreement >= 2 && t.continuity >= kContinues) return 0.0;
+  if (t.contradiction > t.agreement || t.denial < kDenied) return 1.0;
+  return kUndecided;
+}
+
+// How the outcomes are split into observations that are independent given the class.
+struct Split {
+  std::vector<std::size_t> sizes;
+  std::vector<std::size_t> (*values)(const Outcome&);
+};
+
+Split splitWithConfidence() {
+  return {{kConfidences, T::kAgreements * T::kContradictions * T::kContinuities, T::kDenials},
+          [](const Outcome& o) {
+            const T& t = o.testimony;
+            const std::size_t cell =
+                (t.agreement * T::kContradictions + t.contradiction) * T::kContinuities + t.continuity;
+            return std::vector<std::size_t>{o.confidence, cell, t.denial};
+          }};
+}
+
+Split splitWithoutConfidence() {
+  return {{T::kAgreements * T::kContradictions, T::kContinuities, T::kDenials}, [](const Outcome& o) {
+            const T& t = o.testimony;
+            return std::vector<std::size_t>{t.agreement * T::kContradictions + t.contradiction, t.continuity,
+                                            t.denial};
+          }};
+}
+
+std::vector<double> countOutcomes(const Testimonies& testimonies,
+                                  const std::vector<Image<std::uint8_t>>& confidence) {
+  std::vector<double> counts(kOutcomes, 0.0);
+  for (std::size_t i = 0; i < testimonies.views.size(); ++i) {
+    const Image<T>& view = testimonies.views[i];
+    for (std::size_t p = 0; p < view.size(); ++p) {
+      if (!view.data()[p].measured) continue;
+      counts[outcome(confidence[i].empty() ? 0 : confidence[i].data()[p], view.data()[p])] += 1;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+ConfidenceBins::ConfidenceBins(const std::vector<View>& views) {
+  constexpr std::size_t kStride = 7;  // a sample is enough for twenty quantiles
+  std::vector<float> sample;
+  for (const View& view : views) {
+    if (view.map.confidence.empty()) return;
+    for (std::size_t i = 0; i < view.map.depth.size(); i += kStride) {
+      const float c = view.map.confidence.data()[i];
+      if (view.map.depth.data()[i] != kInvalidDepth && std::isfinite(c)) sample.push_back(c);
+    }
+  }
+  if (sample.empty()) return;
+  std::sort(sample.begin(), sample.end());
+  if (sample.front() == sample.back()) return;
+  for (std::size_t k = 1; k < kConfidences; ++k) ends_.push_back(sample[sample.size() * k / kConfidences]);
+}
+
+std::uint8_t ConfidenceBins::binOf(float confidence) const {
+  if (!std::isfinite(confidence)) return 0;
+  return static_cast<std::uint8_t>(std::upper_bound(ends_.begin(), ends_.end(), confidence) - ends_.begin());
+}
+
+std::vector<Image<std::uint8_t>> ConfidenceBins::binAll(const std::vector<View>& views) const {
+  std::vector<Image<std::uint8_t>> bins(views.size());
+  if (!informative()) return bins;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Image<float>& confidence = views[i].map.confidence;
+    bins[i] = Image<std::uint8_t>(confidence.width(), confidence.height());
+    std::transform(confidence.begin(), confidence.end(), bins[i].begin(),
+                   [this](float c) { return binOf(c); });
+  }
+  return bins;
+}
+
+double ReliabilityTable::outlier(std::size_t confidence, const PixelTestimony& testimony) const {
+  return table_[outcome(confidence, testimony)];
+}
+
+ReliabilityTable learnReliability(const Testimonies& testimonies,
+                                  const std::vector<Image<std::uint8_t>>& confidence, bool has_confidence) {
+  const std::vector<double> counts = countOutcomes(testimonies, confidence);
+  const Split split = has_confidence ? splitWithConfidence() : splitWithoutConfidence();
+  JointCounts joint(split.sizes);
+  std::vector<double> guess(joint.counts.size(), 0.0);
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    if (counts[k] == 0) continue;
+    const Outcome o = outcomeAt(k);
+    const std::size_t cell = joint.index(split.values(o));
+    joint.counts[cell] += counts[k];
+    guess[cell] += counts[k] * firstGuess(o.testimony);
+  }
+  for (std::size_t c = 0; c < guess.size(); ++c) guess[c] /= std::max(joint.counts[c], 1.0);
+  const TwoClassModel model = fitTwoClasses(joint, std::move(guess));
+
+  ReliabilityTable result;
+  result.outlier_share_ = model.outlier_share;
+  result.table_.resize(kOutcomes);
+  std::array<double, kConfidences> all{}, bad{};
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const Outcome o = outcomeAt(k);
+    result.table_[k] = model.outlierGiven(split.values(o));
+    all[o.confidence] += counts[k], bad[o.confidence] += counts[k] * result.table_[k];
+  }
+  for (std::size_t c = 0; c < kConfidences; ++c) {
+    result.by_confidence_[c] = all[c] > 0 ? bad[c] / all[c] : model.outlier_share;
+  }
+  return result;
+}
+
+}  // namespace vdbfuse

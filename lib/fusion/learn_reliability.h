@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "fusion/pixel_testimony.h"
+#include "vdbfuse/fusion/reliability.h"
+
+namespace vdbfuse {
+
+/// Bin of each pixel's confidence, all 0 when there is none.
+class ConfidenceBins {
+ public:
+  explicit ConfidenceBins(const std::vector<View>& views);
+  bool informative() const { return !ends_.empty(); }
+  const std::vector<float>& ends() const { return ends_; }
+  std::uint8_t binOf(float confidence) const;
+  /// One image a view; empty images without confidence.
+  std::vector<Image<std::uint8_t>> binAll(const std::vector<View>& views) const;
+
+ private:
+  std::vector<float> ends_;
+};
+
+/// The learned table: outlier probability of everything that can be observed of a pixel.
+class ReliabilityTable {
+ public:
+  double outlier(std::size_t confidence, const PixelTestimony& testimony) const;
+  double outlierShare() const { return outlier_share_; }
+  const std::array<double, ReliabilityModel::kConfidences>& byConfidence() const { return by_confidence_; }
+
+ private:
+  friend ReliabilityTable learnReliability(const Testimonies&, const std::vector<Image<std::uint8_t>>&, bool);
+  double outlier_share_ = 0;
+  std::array<double, ReliabilityModel::kConfidences> by_confidence_{};
+  std::vector<double> table_;
+};
+
+/// EM over all measured pixels. `confidence`: bins, used when `has_confidence`.
+ReliabilityTable learnReliability(const Testimonies& testimonies,
+                                  const std::vector<Image<std::uint8_t>>& confidence, bool has_confidence);
+
+}  // namespace vdbfuse

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the other views say of each pixel of a view, in a few bins.
+#pragma once
+
+#include <vector>
+
+#include "vdbfuse/base/progress.h"
+#include "vdbfuse/fusion/pixel_surface.h"
+#include "vdbfuse/fusion/view_graph.h"
+#include "vdbfuse/sensor/noise_model.h"
+
+namespace vdbfuse {
+
+/// Bins of one pixel. `measured` is false where there is no depth.
+struct PixelTestimony {
+  static constexpr std::size_t kAgreements = 6;      ///< neighbours that agree: 0 … 4, 5 or more
+  static constexpr std::size_t kContradictions = 3;  ///< neighbours that see past the point: 0, 1, 2 or more
+  static constexpr std::size_t kContinuities = 4;    ///< share of the neighbourhood on the same surface
+  static constexpr std::size_t kDenials =
+      7;  ///< smallest evidence of the others where this pixel claims free space
+  std::uint8_t agreement = 0, contradiction = 0, continuity = 0;
+  /// Not yet examined: the last bin, "nobody denies".
+  std::uint8_t denial = kDenials - 1;
+  bool measured = false;
+};
+
+struct Testimonies {
+  std::vector<Image<PixelTestimony>> views;
+  /// Share of no-returns where a point that three neighbours confirm should have been seen; ½ when unknown.
+  double miss_rate = 0.5;
+};
+
+/// Asks the neighbours of each view. A neighbour agrees when its depth at the projected point is within 3
+/// combined standard deviations and its normal within 45° (a missing normal vetoes nothing); it contradicts
+/// when it measured something further away than that. One that sees something nearer says nothing.
+Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
+                           const SensorModel& sensor, const std::vector<std::vector<std::size_t>>& neighbours,
+                           const Progress& progress);
+
+}  // namespace vdbfuse

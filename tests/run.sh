@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# tests/run.sh [--all]: installs the Debian packages that are missing, builds with warnings as errors, runs all tests,
+# and those of the cheap modules once more under the address and undefined-behaviour sanitizers.
+#
+#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file
+#   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
+set -euo pipefail
+cd "$(dirname "$0")/.."
+all=no
+case "${1:-}" in
+  --all) all=yes ;;
+  "") ;;
+  *) echo "usage: tests/run.sh [--all]" >&2; exit 2 ;;
+esac
+with_pcl=${VDBFUSE_WITH_PCL:-ON}
+jobs=$(nproc)
+results=()
+failed=0
+
+step() { printf '\n== %s\n' "$*"; }
+
+# run_tests NAME BUILD_FOLDER [ctest arguments]: counts what passed and failed.
+run_tests() {
+  local name=$1 folder=$2 log passed bad
+  shift 2
+  log=$folder/tests.log
+  ctest --test-dir "$folder" --output-on-failure -j "$jobs" "$@" | tee "$log" | grep -vE '^ *(Start|[0-9]+/[0-9]+ .* Passed)' || true
+  if ! grep -q 'tests passed' "$log"; then
+    results+=("$name: ctest did not finish")
+    failed=$((failed + 1))
+    return
+  fi
+  passed=$(grep -cE '^ *[0-9]+/[0-9]+ .* Passed' "$log" || true)
+  bad=$(sed -nE 's/.* ([0-9]+) tests? failed out of .*/\1/p' "$log")
+  results+=("$name: $passed passed, ${bad:-0} failed")
+  total_passed=$((${total_passed:-0} + passed))
+  failed=$((failed + ${bad:-0}))
+}
+
+# build NAME FOLDER PRESET [cmake arguments]
+build() {
+  local name=$1 folder=$2 preset=$3
+  shift 3
+  step "$name"
+  cmake --preset "$preset" -B "$folder" -DVDBFUSE_WERROR=ON -DVDBFUSE_BUILD_TESTS=ON \
+    -DVDBFUSE_BUILD_EXAMPLES=ON -DVDBFUSE_WITH_PCL="$with_pcl" "$@" >"$folder.log" 2>&1 ||
+    { cat "$folder.log"; exit 1; }
+  rm "$folder.log"
+}
+
+step "Packages"
+scopes=(build test)
+[ "$with_pcl" = OFF ] || scopes+=(pcl)
+[ "$all" = no ] || scopes+=(all)
+cmake/install-packages.sh "${scopes[@]}"
+
+build "Release" build release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+cmake --build build -j "$jobs"
+run_tests release build
+
+if [ "$all" = no ]; then
+  # What is cheap to compile and does the arithmetic of indices: no OpenVDB on the outside, no PCL.
+  build "Sanitizers on the cheap modules" build-asan asan -DVDBFUSE_WITH_PCL=OFF
+  modules=(base geometry sensor mincut mesh)
+  targets=()
+  for module in "${modules[@]}"; do
+    [ -d "tests/$module" ] && targets+=("vdbfuse_test_$module")
+  done
+  cmake --build build-asan -j "$jobs" --target "${targets[@]}"
+  for target in "${targets[@]}"; do
+    module=${target#vdbfuse_test_}
+    if "build-asan/tests/$module/$target" --gtest_brief=1; then
+      results+=("sanitizers, $module: passed")
+      total_passed=$((${total_passed:-0} + 1))
+    else
+      results+=("sanitizers, $module: FAILED")
+      failed=$((failed + 1))
+    fi
+  done
+else
+  build "Sanitizers on everything" build-asan asan
+  cmake --build build-asan -j "$jobs"
+  run_tests sanitizers build-asan -LE 'style|consumer'
+  build "clang++" build-clang release -DCMAKE_CXX_COMPILER=clang++
+  cmake --build build-clang -j "$jobs"
+  run_tests clang++ build-clang -LE 'style|consumer'
+  build "Without PCL, static" build-static release -DVDBFUSE_WITH_PCL=OFF -DBUILD_SHARED_LIBS=OFF
+  cmake --build build-static -j "$jobs"
+  run_tests "static, without PCL" build-static -LE style
+  step "Names in every file (clang-tidy)"
+  if tests/style/tidy.sh build; then
+    results+=("names: passed")
+    total_passed=$((${total_passed:-0} + 1))
+  else
+    results+=("names: FAILED")
+    failed=$((failed + 1))
+  fi
+fi
+
+step "Results"
+printf '%s\n' "${results[@]}"
+echo "${total_passed:-0} passed, $failed failed"
+[ "$failed" -eq 0 ]

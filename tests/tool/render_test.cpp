@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/temporary_folder.h"
+#include "mesh/shapes.h"
+#include "tool/run_tool.h"
+#include "vdbfuse/io/mesh_file.h"
+#include "vdbfuse/io/png.h"
+
+namespace vdbfuse {
+namespace {
+
+using test::readText;
+using test::runTool;
+using test::TemporaryFolder;
+using test::ToolResult;
+using testing::HasSubstr;
+
+TEST(RenderTool, FramesAMeshByItself) {
+  const TemporaryFolder folder;
+  writeMesh(folder / "ball.ply", test::sphere(3.0, 3, {7, 8, 9}));
+  ASSERT_EQ(runTool(folder, "render ball.ply out.png --size 80x60").exit_code, 0);
+  const Image<Rgb8> picture = readPngRgb(folder / "out.png");
+  const Rgb8 white{255, 255, 255};
+  EXPECT_EQ(picture.width(), 80);
+  EXPECT_EQ(picture(0, 0), white);
+  EXPECT_NE(picture(40, 30), white);
+}
+
+TEST(RenderTool, DrawsFromAViewOfADataSet) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(runTool(folder, "synth sphere scan --views 2 --size 64x48").exit_code, 0);
+  ASSERT_EQ(runTool(folder, "render scan/truth.ply a.png --from scan:1").exit_code, 0);
+  EXPECT_EQ(readPngRgb(folder / "a.png").width(), 64);
+  const ToolResult run = runTool(folder, "render scan/truth.ply b.png --from scan:7");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("no view '7' among 2"));
+}
+
+TEST(RenderTool, DrawsTheDistanceFromAReference) {
+  const TemporaryFolder folder;
+  writeMesh(folder / "small.ply", test::sphere(1.0, 3));
+  writeMesh(folder / "large.ply", test::sphere(1.5, 3));
+  const std::string options = " --size 40x30 --color error --range 0,0.5 --reference ";
+  ASSERT_EQ(runTool(folder, "render small.ply none.png" + options + "small.ply").exit_code, 0);
+  ASSERT_EQ(runTool(folder, "render small.ply much.png" + options + "large.ply").exit_code, 0);
+  EXPECT_GT(readPngRgb(folder / "much.png")(20, 15)[0], readPngRgb(folder / "none.png")(20, 15)[0] + 80);
+  EXPECT_EQ(runTool(folder, "render small.ply x.png --color error").exit_code, 2);
+}
+
+TEST(RenderTool, KeepsAnExistingPictureUnlessTold) {
+  const TemporaryFolder folder;
+  writeMesh(folder / "ball.ply", test::sphere(1.0, 2));
+  test::writeText(folder / "out.png", "mine");
+  const ToolResult run = runTool(folder, "render ball.ply out.png");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("or --overwrite"));
+  EXPECT_EQ(readText(folder / "out.png"), "mine");
+  EXPECT_EQ(runTool(folder, "render ball.ply out.png --overwrite --size 8x8").exit_code, 0);
+}
+
+TEST(RenderTool, SaysThatAMeshCarriesNoSupport) {
+  const TemporaryFolder folder;
+  writeMesh(folder / "ball.ply", test::sphere(1.0, 2));
+  const ToolResult run = runTool(folder, "render ball.ply out.png --color support");
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("the mesh carries no support"));
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+}  // namespace
+}  // namespace vdbfuse

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "vdbfuse/geometry/image.h"
+
+namespace vdbfuse::tool {
+
+struct SliceRequest {
+  std::filesystem::path file;  ///< .vdb
+  std::string plane;           ///< x=VALUE, y=VALUE or z=VALUE, world units
+  std::string grid;            ///< name; empty: the first in the file
+  int longest = 800;           ///< pixels along the longer side
+  double low = 0, high = 0;    ///< values at the ends of the colours; equal: from the data
+};
+
+/// A slice through a grid and its coarser levels (`name_level1`, …): the finest known value at each point.
+/// rho, support and weight are drawn from dark to light, everything else around zero. Throws IoError,
+/// InvalidArgument.
+Image<Rgb8> renderSlice(const SliceRequest& request);
+
+}  // namespace vdbfuse::tool
