@@ -10,7 +10,10 @@ find_package(PkgConfig REQUIRED)
 
 # Debian keeps OpenVDB's find module in its multiarch library folder.
 list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
-find_package(OpenVDB REQUIRED)
+# It sets BUILD_SHARED_LIBS, which is ours to choose: only its targets leave the block.
+block(SCOPE_FOR VARIABLES)
+  find_package(OpenVDB REQUIRED)
+endblock()
 
 # flann's CMake target misses lz4; its pkg-config file would drag in MPI and HDF5.
 find_package(flann CONFIG REQUIRED)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of somebody else's: eight depth maps of a sphere in memory, one call, a closed mesh.
+// A program of somebody else's: 26 depth maps of a sphere in memory, one call, a closed mesh.
 #include <cmath>
 #include <cstdio>
 #include <vector>
@@ -14,7 +14,7 @@ namespace {
 vdbfuse::View viewOfSphere(const Eigen::Vector3d& eye) {
   vdbfuse::View view;
   view.projection = vdbfuse::Pinhole{96, 96, 110, 110, 47.5, 47.5, {}};
-  view.world_from_camera = vdbfuse::lookAt(eye, Eigen::Vector3d::Zero(), Eigen::Vector3d(0.1, 0.2, 1));
+  view.world_from_camera = vdbfuse::lookAt(eye, Eigen::Vector3d::Zero(), Eigen::Vector3d(0, 0, 1));
   view.map.depth = vdbfuse::Image<float>(96, 96, vdbfuse::kInvalidDepth);
   const Eigen::Vector3d center = view.world_from_camera.inverse() * Eigen::Vector3d::Zero();
   for (int y = 0; y < 96; ++y) {
@@ -31,9 +31,12 @@ vdbfuse::View viewOfSphere(const Eigen::Vector3d& eye) {
 
 int main() {
   std::vector<vdbfuse::View> views;
-  for (const double x : {-1.0, 1.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      for (const double z : {-1.0, 1.0}) views.push_back(viewOfSphere(1.8 * Eigen::Vector3d(x, y, z)));
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        const Eigen::Vector3d direction(x, y, z);
+        if (!direction.isZero()) views.push_back(viewOfSphere(3 * direction.normalized()));
+      }
     }
   }
   vdbfuse::ReconstructOptions options;
