@@ -23,13 +23,20 @@ constexpr std::array kAngleBinsDeg = {2.0, 8.0, 20.0, 40.0, 60.0, 75.0};
 constexpr std::size_t kEnoughPairs = 400;
 // Residuals beyond this share of the depth are not noise; what lies below is modelled.
 constexpr double kLargestResidual = 0.03;
-// Pairs that both look along the surface say little of the noise along their rays.
-constexpr double kLeastCosines = 0.3;
+// A surface that either view sees at a flatter angle, or from behind, says little of the noise along the
+// rays.
+constexpr double kLeastCosine = 0.3;
 
 struct Residual {
-  double scale;  // |distance| along the normal over √(cos² + cos²): estimates the noise along the rays
-  double depth;
+  double distance;  // along the normal
+  std::array<double, 2> cosines, depths;
   std::size_t angle_bin;
+
+  // Standard deviation of `distance` where the noise along a ray is (depth/typical)^exponent.
+  double spread(int exponent, double typical) const {
+    return std::hypot(cosines[0] * std::pow(depths[0] / typical, exponent),
+                      cosines[1] * std::pow(depths[1] / typical, exponent));
+  }
 };
 
 int sampleStride(const Image<float>& depth) {
@@ -102,9 +109,12 @@ class ResidualCollector {
     const double angle = std::acos(std::clamp(ray.dot(other_ray), -1.0, 1.0)) * 180 / std::numbers::pi;
     const auto bin = std::upper_bound(kAngleBinsDeg.begin(), kAngleBinsDeg.end(), angle);
     if (bin == kAngleBinsDeg.end()) return;
-    const double cosines = std::hypot(normal.dot(ray), normal.dot(other_ray));
-    if (cosines < kLeastCosines) return;
-    out.push_back({residual / cosines, depth, static_cast<std::size_t>(bin - kAngleBinsDeg.begin())});
+    const double cosine = -normal.dot(ray), other_cosine = -normal.dot(other_ray);
+    if (std::min(cosine, other_cosine) < kLeastCosine) return;
+    out.push_back({residual,
+                   {cosine, other_cosine},
+                   {depth, other.map.depth(seen->x, seen->y)},
+                   static_cast<std::size_t>(bin - kAngleBinsDeg.begin())});
   }
 
   const std::vector<View>& views_;
@@ -126,20 +136,20 @@ std::vector<Residual> collectResiduals(const std::vector<View>& views, const Vie
   return all;
 }
 
-// Residuals of one bin (or of all) divided by (depth/typical)^exponent.
+// Residuals of one bin (or of all) divided by what noise of scale 1 at the typical depth makes of them.
 std::vector<double> normalised(const std::vector<Residual>& residuals, int exponent, double typical,
                                std::optional<std::size_t> bin) {
   std::vector<double> result;
   for (const Residual& r : residuals) {
     if (bin && r.angle_bin != *bin) continue;
-    result.push_back(r.scale / std::pow(r.depth / typical, exponent));
+    result.push_back(r.distance / r.spread(exponent, typical));
   }
   return result;
 }
 
 double logJacobian(const std::vector<Residual>& residuals, int exponent, double typical) {
   double sum = 0;
-  for (const Residual& r : residuals) sum -= exponent * std::log(r.depth / typical);
+  for (const Residual& r : residuals) sum -= std::log(r.spread(exponent, typical));
   return sum;
 }
 

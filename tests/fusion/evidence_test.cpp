@@ -61,8 +61,10 @@ TEST_P(EveryRule, TheOrderOfTheViewsDoesNotMatter) {
     ASSERT_NEAR(reversed[i], expected[i], 1e-3 * (1 + std::abs(expected[i])));
 }
 
-TEST_P(EveryRule, APointInFrontOfASphereIsOutside) {
-  for (const float e : evidenceAt(sphere(), pointsAt(0.54), rule(GetParam()))) EXPECT_GT(e, 0);
+TEST_P(EveryRule, APointInFrontOfASphereIsOutsideUnlessEverySensorMustSeeIt) {
+  // Without self-occlusion the sensors on the far side deny it, and they are more.
+  for (const float e : evidenceAt(sphere(), pointsAt(0.54), rule(GetParam())))
+    EXPECT_EQ(e > 0, GetParam() != EvidenceRule::NoSelfOcclusion);
 }
 
 TEST_P(EveryRule, TheInteriorOfAClosedSphereIsNeverVisible) {
@@ -131,6 +133,7 @@ TEST(Evidence, ThePapersRuleIsTheLogOddsOfTheDirectProduct) {
   const Points points = randomPoints(400);
   const std::vector<float> found = evidenceAt(judged, points, rule(EvidenceRule::Paper));
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].norm() > 0.65) continue;  // outside [near, far] nothing holds
     double product = 1;
     bool reported = false;
     for (const JudgedView& view : judged.views) {

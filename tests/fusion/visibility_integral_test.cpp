@@ -46,9 +46,11 @@ TEST(VisibilityIntegral, IsTheExactIntegralForOneToEightHundredViews) {
       const std::vector<Testimony> denials = {{-5.0, n}};
       EXPECT_NEAR(byIntegral(a, denials), exactly(a, denials), 0.2) << a << " " << n;
       const std::vector<Testimony> agreements = {{5.0, n}};
-      EXPECT_NEAR(byIntegral(a, agreements), exactly(a, agreements), 0.02 * (10 + 5 * n)) << a << " " << n;
+      // Far above where evidence is clamped: a share of it is enough.
+      EXPECT_NEAR(byIntegral(a, agreements), exactly(a, agreements), 0.2 + 0.06 * exactly(a, agreements))
+          << a << " " << n;
       const std::vector<Testimony> mixed = {{-4.0, n}, {5.0, std::ceil(n / 20)}};
-      EXPECT_NEAR(byIntegral(a, mixed), exactly(a, mixed), 0.5) << a << " " << n;
+      EXPECT_NEAR(byIntegral(a, mixed), exactly(a, mixed), 1.0) << a << " " << n;
     }
   }
   for (const double n : {1.0, 8.0, 72.0}) {
