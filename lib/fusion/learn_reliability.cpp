@@ -43,10 +43,12 @@ Outcome outcomeAt(std::size_t index) {
   return result;
 }
 
-// Only evidence against condemns: a pixel of which nobody knows anything stays undecided.
+constexpr double kUndecided = 0.5;
+
+// Only evidence against condemns: a pixel of which nobody knows anything stays undecided, and never ends up
+// worse than that or than its confidence alone would have it.
 double firstGuess(const T& t) {
   constexpr std::uint8_t kContinues = 2, kDenied = 3;
-  constexpr double kUndecided = 0.5;
   if (t.agreement >= 2 && t.continuity >= kContinues) return 0.0;
   if (t.contradiction > t.agreement || t.denial < kDenied) return 1.0;
   return kUndecided;
@@ -155,6 +157,11 @@ ReliabilityTable learnReliability(const Testimonies& testimonies,
   }
   for (std::size_t c = 0; c < kConfidences; ++c) {
     result.by_confidence_[c] = all[c] > 0 ? bad[c] / all[c] : model.outlier_share;
+  }
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const Outcome o = outcomeAt(k);
+    if (firstGuess(o.testimony) != kUndecided) continue;
+    result.table_[k] = std::min(result.table_[k], std::max(kUndecided, result.by_confidence_[o.confidence]));
   }
   return result;
 }

@@ -68,34 +68,41 @@ struct Planted {
 
 TEST(TwoClassEm, APlantedModelIsRecoveredFromItsExpectedCounts) {
   const Planted truth;
-  JointCounts joint{3, 4, {}};
+  JointCounts joint({3, 4});
   std::vector<double> start;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t b = 0; b < 4; ++b) {
-      joint.counts.push_back(1e6 * (truth.good(a, b) + truth.bad(a, b)));
+      joint.counts[joint.index(std::array{a, b})] = 1e6 * (truth.good(a, b) + truth.bad(a, b));
       start.push_back(a >= 1 && b >= 2 ? 0.0 : 1.0);
     }
   const TwoClassModel model = fitTwoClasses(joint, start);
   EXPECT_NEAR(model.outlier_share, truth.share, 0.02);
   for (std::size_t a = 0; a < 3; ++a) {
-    EXPECT_NEAR(model.inlier_a[a], truth.good_a.at(a), 0.03);
+    EXPECT_NEAR(model.inlier[0][a], truth.good_a.at(a), 0.03);
     for (std::size_t b = 0; b < 4; ++b) {
       const double all = truth.bad(a, b) + truth.good(a, b);
       if (all > 0) {
-        EXPECT_NEAR(model.outlierGiven(a, b), truth.bad(a, b) / all, 0.05);
+        EXPECT_NEAR(model.outlierGiven(std::array{a, b}), truth.bad(a, b) / all, 0.05);
       }
     }
   }
 }
 
 TEST(TwoClassEm, EveryStepEndsInProbabilities) {
-  JointCounts joint{2, 2, {0, 0, 0, 100}};
+  JointCounts joint({2, 2});
+  joint.counts = {0, 0, 0, 100};
   const TwoClassModel model = fitTwoClasses(joint, {1, 1, 1, 0});
-  EXPECT_LT(model.outlierGiven(1, 1), 0.05);
+  EXPECT_LT(model.outlierGiven(std::array<std::size_t, 2>{1, 1}), 0.05);
   for (std::size_t k = 0; k < 4; ++k) {
-    const double p = model.outlierGiven(k / 2, k % 2);
+    const double p = model.outlierGiven(std::array{k / 2, k % 2});
     EXPECT_TRUE(p > 0 && p < 1);
   }
+}
+
+TEST(JointCounts, IndexAndValuesAreInverse) {
+  const JointCounts joint({3, 4, 5});
+  ASSERT_EQ(joint.counts.size(), 60u);
+  for (std::size_t k = 0; k < 60; ++k) EXPECT_EQ(joint.index(joint.values(k)), k);
 }
 
 }  // namespace
