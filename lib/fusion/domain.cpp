@@ -12,7 +12,6 @@ namespace vdbfuse {
 namespace {
 
 constexpr double kPixelsPerView = 20000;
-constexpr int kPlacesPerSide = 100;
 constexpr double kEnoughPoints = 3.0;
 constexpr double kMargin = 0.03;
 
@@ -59,6 +58,13 @@ Box roughBox(const std::vector<ReliablePoint>& points) {
   return box;
 }
 
+// Side of a place: so large that a view leaves about sixteen points in each place it sees.
+double placeSide(const Box& rough, std::size_t points, std::size_t views) {
+  const double across = std::sqrt(static_cast<double>(points) / static_cast<double>(views));
+  const double places = std::clamp(across / 4, 8.0, 100.0);
+  return std::max(rough.sizes().maxCoeff() / places, 1e-9);
+}
+
 struct Place {
   double trust = 0;
   std::uint32_t first_view = 0;
@@ -72,7 +78,7 @@ Box supportedDomain(const JudgedViews& judged) {
   if (points.empty())
     throw InvalidArgument("views", "no depth is believed by any other view; nothing to reconstruct");
   const Box rough = roughBox(points);
-  const double side = std::max(rough.sizes().maxCoeff() / kPlacesPerSide, 1e-9);
+  const double side = placeSide(rough, points.size(), judged.views.size());
   std::unordered_map<std::uint64_t, Place> places;
   const auto placeOf = [&](const Eigen::Vector3d& point) {
     const Eigen::Matrix<std::uint64_t, 3, 1> cell = ((point - rough.min()) / side).cast<std::uint64_t>();

@@ -48,7 +48,7 @@ constexpr double kUndecided = 0.5;
 // Only evidence against condemns: a pixel of which nobody knows anything stays undecided, and never ends up
 // worse than that or than its confidence alone would have it.
 double firstGuess(const T& t) {
-  constexpr std::uint8_t kContinues = 2, kDenied = 3;
+  constexpr std::uint8_t kContinues = 2, kDenied = 4;  // smallest evidence of the others below −0.3
   if (t.agreement >= 2 && t.continuity >= kContinues) return 0.0;
   if (t.contradiction > t.agreement || t.denial < kDenied) return 1.0;
   return kUndecided;

@@ -38,6 +38,18 @@ void setOutliers(const Testimonies& testimonies, const std::vector<Image<std::ui
   });
 }
 
+ReliabilityModel modelOf(const ReliabilityTable& table, const ConfidenceBins& bins) {
+  return {table.outlierShare(), bins.ends(), table.byConfidence()};
+}
+
+// A confidence that says nothing is left aside, so that continuity can be an observation of its own.
+ReliabilityTable learn(const Testimonies& testimonies, const std::vector<Image<std::uint8_t>>& confidence,
+                       const ConfidenceBins& bins) {
+  ReliabilityTable table = learnReliability(testimonies, confidence, bins.informative());
+  if (confidenceDirection(modelOf(table, bins)) != ConfidenceDirection::Uninformative) return table;
+  return learnReliability(testimonies, confidence, false);
+}
+
 // Empty space around an object shows as a no-return along most of the border of most images; a room does not.
 bool trustNoReturn(const std::vector<JudgedView>& views, JudgeOptions::NoReturn rule) {
   constexpr double kMostOfTheBorder = 0.5;
@@ -77,7 +89,7 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
       hearNeighbours(views, surfaces, sensor, chooseNeighbours(graph, count, options.neighbours), progress);
   const ConfidenceBins bins(views);
   const std::vector<Image<std::uint8_t>> confidence = bins.binAll(views);
-  ReliabilityTable table = learnReliability(testimonies, confidence, bins.informative());
+  ReliabilityTable table = learn(testimonies, confidence, bins);
 
   Judgement result;
   JudgedViews& judged = result.judged = believe(std::move(views), sensor);
@@ -94,10 +106,10 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
 
   if (options.denial == JudgeOptions::Denial::Examine) {
     examineDenial(judged, result.domain, testimonies, progress);
-    table = learnReliability(testimonies, confidence, bins.informative());
+    table = learn(testimonies, confidence, bins);
     setOutliers(testimonies, confidence, table, judged.views);
   }
-  result.model = {table.outlierShare(), bins.ends(), table.byConfidence()};
+  result.model = modelOf(table, bins);
   return result;
 }
 

@@ -16,13 +16,13 @@ double capsuleDistance(const Vector3d& p, const Vector3d& from, const Vector3d& 
 }
 
 // Measures of the figure, in parts of its height; feet at z = 0, front towards −y.
-constexpr double kLegRadius = 0.02, kLegX = 0.08, kHip = 0.42;
+constexpr double kLegRadius = 0.02, kLegX = 0.08, kHip = 0.45;
 constexpr double kTorsoRounding = 0.12;
 constexpr double kArmRadius = 0.03;
 constexpr double kHeadRadius = 0.1;
 const Vector3d kTorsoCenter{0, 0, 0.6}, kTorsoHalf{0.16, 0.15, 0.2};
 const Vector3d kHeadCenter{0, 0, 0.9};
-const Vector3d kShoulder{0.17, 0, 0.74}, kHand{0.27, 0, 0.45};
+const Vector3d kShoulder{0.145, 0, 0.74}, kHand{0.27, 0, 0.45};
 constexpr double kCavityWidth = 0.1, kCavityDepth = 0.2, kCavityZ = 0.62;
 
 Vector3d mirrored(const Vector3d& p) { return {-p.x(), p.y(), p.z()}; }
@@ -49,7 +49,7 @@ std::vector<SceneRegion> figureRegions() {
   const double front = kTorsoCenter.y() - kTorsoHalf.y(), half = kCavityWidth / 2 - kInset;
   const Box cavity(Vector3d(-half, front, kCavityZ - half),
                    Vector3d(half, front + kCavityDepth - kInset, kCavityZ + half));
-  const Box torso(Vector3d(-0.12, 0.07, 0.46), Vector3d(0.12, 0.13, 0.74));
+  const Box torso(Vector3d(-0.09, 0.07, 0.47), Vector3d(0.09, 0.1, 0.73));
   const CylinderShape leg{{kLegX, 0, 0.04}, {kLegX, 0, 0.38}, kLegRadius / 2};
   const CylinderShape arm{kShoulder, kHand, kArmRadius / 2};
   // The figure faces the viewer: its left is at +x.

@@ -192,7 +192,7 @@ TEST(SyntheticScan, HardViewsMixHalfOfTheSilhouetteWithWhatLiesBehind) {
 TEST(SyntheticScan, HardViewsHaveTheShareOfWrongPixelsThatTheNameStandsFor) {
   SynthOptions options = hardened({});
   options.views = 6;
-  const ScanStatistics s = total(SyntheticScan(makeScene("figure", {1.0 / 160}), options));
+  const ScanStatistics s = total(SyntheticScan(makeScene("torus", {1.0 / 160}), options));
   EXPECT_GT(share(s.object_wrong, s.object_measured), 0.22);
   EXPECT_LT(share(s.object_wrong, s.object_measured), 0.33);
 }
