@@ -12,7 +12,11 @@ namespace vdbfuse {
 namespace {
 
 constexpr double kPixelsPerView = 20000;
-constexpr double kEnoughPoints = 3.0;
+// Trust a place needs: so many reliable points, or this share of what places have where most points are.
+constexpr double kEnoughPoints = 3.0, kEnoughShare = 0.25;
+// Undecided pixels count only where hardly any pixel is decided.
+constexpr float kDecided = 0.45f, kUndecided = 0.5f;
+constexpr std::size_t kEnoughDecided = 100;
 constexpr double kMargin = 0.03;
 
 struct ReliablePoint {
@@ -21,7 +25,7 @@ struct ReliablePoint {
   float trust;
 };
 
-std::vector<ReliablePoint> reliablePoints(const JudgedViews& judged) {
+std::vector<ReliablePoint> reliablePoints(const JudgedViews& judged, float max_outlier) {
   std::vector<ReliablePoint> points;
   for (std::size_t i = 0; i < judged.views.size(); ++i) {
     const JudgedView& view = judged.views[i];
@@ -30,7 +34,7 @@ std::vector<ReliablePoint> reliablePoints(const JudgedViews& judged) {
     for (int y = stride / 2; y < view.depth.height(); y += stride) {
       for (int x = stride / 2; x < view.depth.width(); x += stride) {
         const float depth = view.depth(x, y), outlier = view.outlier(x, y);
-        if (depth == kInvalidDepth || outlier > 0.5f) continue;
+        if (depth == kInvalidDepth || outlier > max_outlier) continue;
         const Eigen::Vector3d point = view.world_from_camera * unproject(view.projection, x, y, depth);
         points.push_back({point, static_cast<std::uint32_t>(i), 1 - outlier});
       }
@@ -58,10 +62,12 @@ Box roughBox(const std::vector<ReliablePoint>& points) {
   return box;
 }
 
-// Side of a place: so large that a view leaves about sixteen points in each place it sees.
+// Side of a place: so large that a view leaves about one point in each place it sees. Smaller places tell
+// surfaces from scattered mistakes better, the ones filling places by the square and the others by the cube
+// of their side.
 double placeSide(const Box& rough, std::size_t points, std::size_t views) {
   const double across = std::sqrt(static_cast<double>(points) / static_cast<double>(views));
-  const double places = std::clamp(across / 4, 8.0, 100.0);
+  const double places = std::clamp(across, 8.0, 100.0);
   return std::max(rough.sizes().maxCoeff() / places, 1e-9);
 }
 
@@ -71,33 +77,61 @@ struct Place {
   bool several_views = false;
 };
 
+// Space cut into cubes, and what the points say of each.
+class Places {
+ public:
+  Places(const std::vector<ReliablePoint>& points, const Box& rough, std::size_t views)
+      : low_(rough.min()), side_(placeSide(rough, points.size(), views)), one_view_(views == 1) {
+    for (const ReliablePoint& point : points) {
+      const auto [entry, is_new] = places_.try_emplace(key(point.position));
+      Place& place = entry->second;
+      if (is_new) place.first_view = point.view;
+      place.several_views |= place.first_view != point.view;
+      place.trust += point.trust;
+    }
+    enough_ = std::min(kEnoughPoints, kEnoughShare * trustWhereMostPointsAre(points));
+  }
+
+  bool isSupported(const Eigen::Vector3d& point) const {
+    const Place& place = places_.at(key(point));
+    return place.trust >= enough_ && (place.several_views || one_view_);
+  }
+
+ private:
+  std::uint64_t key(const Eigen::Vector3d& point) const {
+    const Eigen::Matrix<std::uint64_t, 3, 1> cell = ((point - low_) / side_).cast<std::uint64_t>();
+    return cell.x() | cell.y() << 20 | cell.z() << 40;
+  }
+
+  double trustWhereMostPointsAre(const std::vector<ReliablePoint>& points) const {
+    std::vector<double> trusts;
+    for (const ReliablePoint& point : points) trusts.push_back(places_.at(key(point.position)).trust);
+    if (trusts.empty()) return 0;
+    const auto middle = trusts.begin() + static_cast<std::ptrdiff_t>(trusts.size() / 2);
+    std::nth_element(trusts.begin(), middle, trusts.end());
+    return *middle;
+  }
+
+  Eigen::Vector3d low_;
+  double side_;
+  bool one_view_;
+  double enough_ = 0;
+  std::unordered_map<std::uint64_t, Place> places_;
+};
+
 }  // namespace
 
 Box supportedDomain(const JudgedViews& judged) {
-  const std::vector<ReliablePoint> points = reliablePoints(judged);
+  std::vector<ReliablePoint> points = reliablePoints(judged, kDecided);
+  if (points.size() < kEnoughDecided) points = reliablePoints(judged, kUndecided);
   if (points.empty())
     throw InvalidArgument("views", "no depth is believed by any other view; nothing to reconstruct");
   const Box rough = roughBox(points);
-  const double side = placeSide(rough, points.size(), judged.views.size());
-  std::unordered_map<std::uint64_t, Place> places;
-  const auto placeOf = [&](const Eigen::Vector3d& point) {
-    const Eigen::Matrix<std::uint64_t, 3, 1> cell = ((point - rough.min()) / side).cast<std::uint64_t>();
-    return cell.x() | cell.y() << 20 | cell.z() << 40;
-  };
-  for (const ReliablePoint& point : points) {
-    if (!rough.contains(point.position)) continue;
-    const auto [entry, is_new] = places.try_emplace(placeOf(point.position));
-    Place& place = entry->second;
-    if (is_new) place.first_view = point.view;
-    place.several_views |= place.first_view != point.view;
-    place.trust += point.trust;
-  }
+  std::erase_if(points, [&](const ReliablePoint& p) { return !rough.contains(p.position); });
+  const Places places(points, rough, judged.views.size());
   Box box;
   for (const ReliablePoint& point : points) {
-    if (!rough.contains(point.position)) continue;
-    const Place& place = places.at(placeOf(point.position));
-    if (place.trust < kEnoughPoints || !(place.several_views || judged.views.size() == 1)) continue;
-    box.extend(point.position);
+    if (places.isSupported(point.position)) box.extend(point.position);
   }
   if (box.isEmpty())
     throw InvalidArgument("views", "the views do not overlap: no place is seen by two of them");
