@@ -7,6 +7,7 @@
 #include "tool/run_tool.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/png.h"
+#include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse {
 namespace {
@@ -67,6 +68,43 @@ TEST(RenderTool, SaysThatAMeshCarriesNoSupport) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, HasSubstr("the mesh carries no support"));
   EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+TEST(RenderTool, DrawsASliceOfAGridWithItsZeroLine) {
+  const TemporaryFolder folder;
+  ScalarGrid ball(
+      "surface", {0.1}, 0.0f,
+      {{-8, -8, -8}, {-8, -8, 0}, {-8, 0, -8}, {-8, 0, 0}, {0, -8, -8}, {0, -8, 0}, {0, 0, -8}, {0, 0, 0}});
+  ball.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
+    for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
+      const Index3 voxel = leaf.origin + Index3(k >> 6, k >> 3 & 7, k & 7);
+      leaf.values[static_cast<std::size_t>(k)] = static_cast<float>(0.1 * voxel.cast<double>().norm() - 0.45);
+    }
+  });
+  writeGrids(folder / "ball.vdb", {&ball});
+  ASSERT_EQ(runTool(folder, "render ball.vdb out.png --slice z=0 --size 64x64").exit_code, 0);
+  const Image<Rgb8> picture = readPngRgb(folder / "out.png");
+  ASSERT_EQ(picture.width(), 64);
+  const Rgb8 inside = picture(32, 32), outside = picture(2, 2);
+  EXPECT_GT(inside[0], inside[2]);    // red
+  EXPECT_GT(outside[2], outside[0]);  // blue
+}
+
+TEST(RenderTool, ASliceNeedsAPlaneAndAGridThatIsThere) {
+  const TemporaryFolder folder;
+  ScalarGrid grid("rho", {0.1}, 1.0f, {{0, 0, 0}});
+  grid.leaf(0).values[0] = 0.5f;
+  writeGrids(folder / "g.vdb", {&grid});
+  const ToolResult without = runTool(folder, "render g.vdb out.png");
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_THAT(without.err, HasSubstr("--slice: is required to draw a grid"));
+  const ToolResult wrong = runTool(folder, "render g.vdb out.png --slice w=3");
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.err, HasSubstr("expected x=VALUE, y=VALUE or z=VALUE, found 'w=3'"));
+  const ToolResult missing = runTool(folder, "render g.vdb out.png --slice z=0 --grid sigma");
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.err, HasSubstr("a float grid named 'sigma'"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.png"));
 }
 
 }  // namespace

@@ -42,13 +42,20 @@ std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
   return levels;
 }
 
+bool isKnown(const ScalarGrid& grid, float value) { return !std::isnan(value) && value != grid.background(); }
+
+// Box around all voxels that hold a value.
 Box boxOf(const std::vector<ScalarGrid>& levels) {
   Box box;
   for (const ScalarGrid& grid : levels) {
     for (std::size_t i = 0; i < grid.leafCount(); ++i) {
-      const Index3 origin = grid.leaf(i).origin;
-      box.extend(grid.frame().toWorld(origin));
-      box.extend(grid.frame().toWorld(Index3(origin.array() + ScalarGrid::kLeafSide)));
+      const ScalarGrid::Leaf leaf = grid.leaf(i);
+      for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
+        if (!isKnown(grid, leaf.values[static_cast<std::size_t>(k)])) continue;
+        const Eigen::Vector3d voxel = (leaf.origin + Index3(k >> 6, k >> 3 & 7, k & 7)).cast<double>();
+        box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() - 0.5)));
+        box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() + 0.5)));
+      }
     }
   }
   return box;
@@ -58,7 +65,7 @@ double finestKnown(const std::vector<ScalarGrid>& levels, const Eigen::Vector3d&
   for (const ScalarGrid& grid : levels) {
     const Index3 voxel = (grid.frame().toIndex(point).array() + 0.5).floor().cast<int>();
     const float value = grid.at(voxel);
-    if (!std::isnan(value) && value != grid.background()) return value;
+    if (isKnown(grid, value)) return value;
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
