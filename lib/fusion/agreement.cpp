@@ -8,6 +8,7 @@
 #include "fusion/touched_leaves.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/sensor/view.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kKernelReach = 2.0;
 void addView(const PreparedView& prepared, const GridFrame& frame, const ScalarGrid::Leaf& leaf) {
   const JudgedView& view = *prepared.view;
   for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
-    const Index3 voxel = leaf.origin + Index3(k >> 6, (k >> 3) & 7, k & 7);
+    const Index3 voxel = leaf.origin + leafOffset(k);
     const std::optional<Sighting> seen = prepared.projector(frame.toWorld(voxel));
     if (!seen) continue;
     const float depth = view.depth(seen->x, seen->y);

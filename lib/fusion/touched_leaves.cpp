@@ -4,19 +4,10 @@
 #include <algorithm>
 
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
-
-bool sameOrigin(const Index3& a, const Index3& b) { return a == b; }
-bool originBefore(const Index3& a, const Index3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
-void sortUnique(std::vector<Index3>& origins) {
-  std::sort(origins.begin(), origins.end(), originBefore);
-  origins.erase(std::unique(origins.begin(), origins.end(), sameOrigin), origins.end());
-}
 
 std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame& frame, const Box& domain,
                                   const TouchOptions& options) {
@@ -42,9 +33,9 @@ std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame&
       }
     }
     // Neighbouring rows touch the same leaves: keep the list short.
-    if (y % 16 == 15) sortUnique(origins);
+    if (y % 16 == 15) sortUniqueOrigins(origins);
   }
-  sortUnique(origins);
+  sortUniqueOrigins(origins);
   return origins;
 }
 

@@ -7,6 +7,7 @@
 #include "fusion/touched_leaves.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 void addView(const PreparedView& prepared, const GridFrame& frame, double truncation,
              const ScalarGrid::Leaf& sum, const ScalarGrid::Leaf& weight) {
   for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
-    const Index3 voxel = sum.origin + Index3(k >> 6, (k >> 3) & 7, k & 7);
+    const Index3 voxel = sum.origin + leafOffset(k);
     const std::optional<Sighting> seen = prepared.projector(frame.toWorld(voxel));
     if (!seen) continue;
     const float measured = prepared.view->depth(seen->x, seen->y);

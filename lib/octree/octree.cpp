@@ -9,6 +9,7 @@
 
 #include "octree/morton.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
@@ -73,7 +74,7 @@ Codes supportedVoxels(const ScalarGrid& support, float threshold, const Octree& 
     const ScalarGrid::Leaf leaf = support.leaf(i);
     for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
       if (!(leaf.values[static_cast<std::size_t>(k)] >= threshold)) continue;
-      const Index3 voxel = leaf.origin + Index3(k >> 6, (k >> 3) & 7, k & 7);
+      const Index3 voxel = leaf.origin + leafOffset(k);
       if (octree.contains(voxel)) codes.push_back(mortonCode(voxel - octree.origin));
     }
   }

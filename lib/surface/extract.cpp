@@ -11,6 +11,7 @@
 #include "surface/split_rim.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
@@ -150,7 +151,7 @@ class Extractor {
     const UpperLeaves leaves = upperLeaves(index);
     const Patch patch = loadPatch(leaves);
     for (int i = 0; i < 512; ++i) {
-      const Index3 cube(i >> 6, i >> 3 & 7, i & 7);
+      const Index3 cube = leafOffset(i);
       unsigned inside = 0;
       bool known = true;
       for (int c = 0; c < 8 && known; ++c) {

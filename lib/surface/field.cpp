@@ -8,6 +8,7 @@
 #include "surface/label_blocks.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/geometry/projector.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
@@ -18,8 +19,6 @@ constexpr double kSameSide = 1.5;     // noise widths or voxels: beyond this a v
 constexpr float kPutBack = 0.05f;     // voxels: what a voxel gets whose smoothed value has the wrong sign
 constexpr float kLeastCosine = 0.2f;  // incidence of pixels without a normal
 constexpr std::size_t kLeavesPerTask = 8;
-
-Index3 voxelOf(int i) { return {i >> 6, i >> 3 & 7, i & 7}; }
 
 // A leaf with a margin of R voxels taken from its 26 neighbours.
 template <int R>
@@ -133,7 +132,7 @@ void measureLeaf(const ScalarGrid& labels, const ScalarGrid& support, const Dist
   const Padded<2> near = loadPadded<2>(labels, out.origin);
   const float voxel = static_cast<float>(labels.frame().voxel);
   for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
-    const Index3 v = voxelOf(i);
+    const Index3 v = leafOffset(i);
     const CellLabel label = labelOf(near.at(v.x(), v.y(), v.z()));
     float& value = out.values[static_cast<std::size_t>(i)];
     if (!isNearBoundary(near, v)) {
@@ -187,7 +186,7 @@ void smoothLeaf(const ScalarGrid& field, const ScalarGrid& labels, const std::ar
   const ScalarGrid::Leaf sides = labels.leaf(*labels.findLeaf(out.origin));
   const float least = kPutBack * static_cast<float>(field.frame().voxel);
   for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
-    const Index3 v = voxelOf(i);
+    const Index3 v = leafOffset(i);
     const CellLabel label = labelOf(sides.values[static_cast<std::size_t>(i)]);
     const float value = patch.at(v.x(), v.y(), v.z());
     out.values[static_cast<std::size_t>(i)] = agrees(value, label) ? value : towards(label, least);

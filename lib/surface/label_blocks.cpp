@@ -4,22 +4,12 @@
 #include <algorithm>
 
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
 
 constexpr std::size_t kFacesPerTask = 1 << 16;
-
-bool before(const Index3& a, const Index3& b) {
-  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-}
-
-void sortUnique(std::vector<Index3>& origins) {
-  std::sort(origins.begin(), origins.end(), before);
-  origins.erase(
-      std::unique(origins.begin(), origins.end(), [](const Index3& a, const Index3& b) { return a == b; }),
-      origins.end());
-}
 
 // Blocks that meet the voxels low … high.
 void appendBlocks(const Index3& low, const Index3& high, std::vector<Index3>& out) {
@@ -61,14 +51,14 @@ std::vector<Index3> boundaryBlocks(const Octree& octree, const std::vector<CellF
       if (labels[face.first] == labels[face.second]) continue;
       appendFace(octree, face.first, face.axis, face.direction, reach, part);
     }
-    sortUnique(part);
+    sortUniqueOrigins(part);
   });
   std::vector<Index3> all;
   for (std::size_t c = 0; c < labels.size(); ++c) {
     if (labels[c] != beyond) appendBorder(octree, c, reach, all);
   }
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  sortUnique(all);
+  sortUniqueOrigins(all);
   return all;
 }
 

@@ -6,6 +6,7 @@
 
 #include "commands.h"
 #include "fuse_report.h"
+#include "json_file.h"
 #include "progress_line.h"
 #include "read_options.h"
 #include "vdbfuse/base/errors.h"
@@ -114,8 +115,7 @@ void addOutputOptions(CLI::App& app, Request& r) {
 
 void requireNew(const fs::path& path, const Request& request) {
   if (path.empty()) return;
-  if (!request.overwrite && fs::exists(path))
-    throw IoError(path, "exists already; give --overwrite to replace it");
+  if (!request.overwrite) refuseExisting(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder))
     throw IoError(path, "cannot be written: there is no folder " + folder.string());

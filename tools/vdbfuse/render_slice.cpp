@@ -8,6 +8,7 @@
 
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/report/slice.h"
+#include "vdbfuse/volume/leaf_index.h"
 #include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
@@ -52,7 +53,7 @@ Box boxOf(const std::vector<ScalarGrid>& levels) {
       const ScalarGrid::Leaf leaf = grid.leaf(i);
       for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
         if (!isKnown(grid, leaf.values[static_cast<std::size_t>(k)])) continue;
-        const Eigen::Vector3d voxel = (leaf.origin + Index3(k >> 6, k >> 3 & 7, k & 7)).cast<double>();
+        const Eigen::Vector3d voxel = (leaf.origin + leafOffset(k)).cast<double>();
         box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() - 0.5)));
         box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() + 0.5)));
       }

@@ -51,7 +51,8 @@ struct JudgeOptions {
 ///  1. the confidence (20 quantile bins), and a cell of *agreement* (neighbour views that measured the same
 ///  point, with
 ///     normals within 45°), *contradiction* (neighbours that see past it) and *continuity* (share of the 5×5
-///     neighbourhood on the same surface). Without confidence, continuity is an observation of its own.
+///     neighbourhood on the same surface). Without confidence, or where it turns out to say nothing,
+///     continuity is an observation of its own.
 ///  2. *denial*: the smallest evidence of all other views where the pixel claims free space.
 /// Starts from: two or more agree and the surface continues = inlier; contradicted by more than agree =
 /// outlier; nobody speaks for or against = undecided, because only evidence against condemns. Takes the
