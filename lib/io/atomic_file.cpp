@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -52,6 +53,13 @@ fs::path createBeside(const fs::path& target) {
   }
 }
 
+// What an error says behind "PATH: " or "PATH, ".
+std::string withoutPath(std::string message, const fs::path& path) {
+  if (message.starts_with(path.string())) message.erase(0, path.string().size());
+  message.erase(0, message.find_first_not_of(":, "));
+  return message;
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(fs::path target) : target_(followLink(target)) {
@@ -71,6 +79,20 @@ void AtomicFile::commit() {
   fs::rename(temporary_, target_, error);
   if (error) throw IoError(target_, "cannot be put in place: " + error.message());
   committed_ = true;
+}
+
+void writeTogether(const std::vector<Output>& outputs) {
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (const Output& output : outputs) {
+    files.push_back(std::make_unique<AtomicFile>(output.target));
+    const fs::path& temporary = files.back()->temporaryPath();
+    try {
+      output.write(temporary);
+    } catch (const IoError& error) {
+      throw IoError(output.target, withoutPath(error.what(), temporary));
+    }
+  }
+  for (const std::unique_ptr<AtomicFile>& file : files) file->commit();
 }
 
 }  // namespace vdbfuse

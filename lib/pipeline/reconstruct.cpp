@@ -91,7 +91,7 @@ Reconstruction reconstruct(const ViewSequence& sequence, const ReconstructOption
       judgeViews(std::move(views), sensor, graph, options, result.calibration, progress);  // ε, w, domain
   const JudgedViews& judged = judgement.judged;
   const Box& domain = judgement.domain;
-  const GridFrame frame = chooseFrame(judged, domain, depths, options);
+  const GridFrame frame = chooseFrame(domain, result.calibration, options);
 
   if (options.method == Method::Tsdf) {
     fuseTsdf(judged, frame, domain, options, progress, timer, result);

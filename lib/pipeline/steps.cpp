@@ -7,6 +7,7 @@
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/fusion/agreement.h"
+#include "vdbfuse/fusion/point_spacing.h"
 
 namespace vdbfuse {
 namespace {
@@ -98,6 +99,7 @@ Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const V
   report.miss_rate = judgement.judged.miss_rate;
   report.near = judgement.judged.sensor.near, report.far = judgement.judged.sensor.far;
   report.outlier_share = judgement.model.outlier_share;
+  report.point_spacing = pointSpacing(judgement.judged);
   report.confidence = confidenceDirection(judgement.model);
   if (options.outliers) {
     report.outlier_share = *options.outliers;
@@ -108,13 +110,12 @@ Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const V
   return judgement;
 }
 
-GridFrame chooseFrame(const JudgedViews& judged, const Box& domain, const DepthStatistics& depths,
+GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
                       const ReconstructOptions& options) {
   const double longest = domain.sizes().maxCoeff();
   if (options.voxel > 0) return {options.voxel};
   if (options.resolution > 0) return {longest / options.resolution};
-  const double pixel = footprint(judged.views.front().projection, depths.median);
-  return {std::max({pixel, judged.sensor.noise.at(depths.median), longest / kDefaultLongestSide})};
+  return {std::max({calibration.point_spacing, calibration.noise_scale, longest / kDefaultLongestSide})};
 }
 
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,

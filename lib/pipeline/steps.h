@@ -23,7 +23,7 @@ Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const V
                      const ReconstructOptions& options, CalibrationReport& report, const Progress& progress);
 
 /// Voxels at integer multiples of the voxel size from the world's origin.
-GridFrame chooseFrame(const JudgedViews& judged, const Box& domain, const DepthStatistics& depths,
+GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
                       const ReconstructOptions& options);
 
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/io/File.h>
 
+#include <cerrno>
 #include <cmath>
+#include <fstream>
 #include <system_error>
 
 #include "vdbfuse/base/errors.h"
@@ -75,6 +77,18 @@ void markUnknown(ScalarGrid::Impl& impl) {
   }
 }
 
+// openvdb::io::File::write() does not notice a disk that is full.
+class GridArchive : public openvdb::io::Archive {
+ public:
+  // Throws std::system_error.
+  void write(const std::filesystem::path& path, const openvdb::GridPtrVec& grids) const {
+    std::ofstream stream(path, std::ios::binary);
+    openvdb::io::Archive::write(stream, grids, /*seekable=*/true);
+    stream.close();
+    if (!stream) throw std::system_error(errno, std::generic_category());
+  }
+};
+
 }  // namespace
 
 void writeGrids(const std::filesystem::path& path, const std::vector<const ScalarGrid*>& grids) {
@@ -83,13 +97,11 @@ void writeGrids(const std::filesystem::path& path, const std::vector<const Scala
   for (const ScalarGrid* grid : grids) copies.push_back(forDisk(grid->impl()));
   std::filesystem::path temporary = path;
   temporary += ".part";
-  std::error_code ignored;
   try {
-    openvdb::io::File file(temporary.string());
-    file.write(copies);
-    file.close();
+    GridArchive().write(temporary, copies);
     std::filesystem::rename(temporary, path);
   } catch (const std::exception& error) {
+    std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
     throw IoError(path, std::string("cannot be written: ") + error.what());
   }

@@ -89,5 +89,26 @@ TEST(AtomicFile, ATargetThatBecameAFolderFailsAtCommitAndLeavesNoTemporary) {
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
+TEST(WriteTogether, PutsAllInPlace) {
+  const TemporaryFolder folder;
+  writeTogether({{folder / "a.ply", [](const auto& path) { writeText(path, "A"); }},
+                 {folder / "b.json", [](const auto& path) { writeText(path, "B"); }}});
+  EXPECT_EQ(readText(folder / "a.ply"), "A");
+  EXPECT_EQ(readText(folder / "b.json"), "B");
+  EXPECT_EQ(folder.entryCount(), 2u);
+}
+
+TEST(WriteTogether, OneFailureLeavesNoneAndNamesItsTarget) {
+  const TemporaryFolder folder;
+  writeText(folder / "a.ply", "old");
+  const auto write = [&] {
+    writeTogether({{folder / "a.ply", [](const auto& path) { writeText(path, "A"); }},
+                   {folder / "b.json", [](const auto& path) { throw IoError(path, "the disk is full"); }}});
+  };
+  EXPECT_EQ(messageOf<IoError>(write), (folder / "b.json").string() + ": the disk is full");
+  EXPECT_EQ(readText(folder / "a.ply"), "old");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
 }  // namespace
 }  // namespace vdbfuse

@@ -199,6 +199,18 @@ TEST_F(FuseTool, OutputsThatCannotBeWrittenAreRefusedBeforeTheWork) {
   EXPECT_THAT(complaint("scan scan --overwrite"), StartsWith("scan: "));
 }
 
+TEST_F(FuseTool, ADiskThatFillsUpLeavesNoneOfTheOutputsAndTheOldMesh) {
+  writeText(folder / "out.ply", "precious");
+  const std::string full_at_40_kB = "trap '' XFSZ && ulimit -f 80";
+  const ToolResult run = runTool(
+      folder, "fuse scan out.ply --overwrite --resolution 24 --save-grids out.vdb --json out.json --quiet",
+      full_at_40_kB);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, StartsWith("vdbfuse: out.vdb: cannot be written: "));
+  EXPECT_TRUE(readText(folder / "out.ply") == "precious");
+  EXPECT_EQ(folder.entryCount(), 2u);
+}
+
 TEST_F(FuseTool, AnUnknownExtensionIsRefusedBeforeTheWork) {
   EXPECT_EQ(complaint("scan out.xyz"), "out.xyz: expected the extension .ply, .obj or .stl, found .xyz");
   EXPECT_EQ(complaint("scan out"), "out: expected the extension .ply, .obj or .stl, found none");

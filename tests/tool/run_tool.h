@@ -29,12 +29,14 @@ inline ToolResult runTool(const std::string& arguments) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
 }
 
-/// The same with `folder` as the working folder.
-inline ToolResult runTool(const TemporaryFolder& folder, const std::string& arguments) {
+/// The same with `folder` as the working folder; `before` is run by the same shell, for its limits.
+inline ToolResult runTool(const TemporaryFolder& folder, const std::string& arguments,
+                          const std::string& before = "true") {
   const TemporaryFolder streams;
   const std::filesystem::path out = streams / "out", err = streams / "err";
-  const std::string command = "cd " + quoted(folder.path()) + " && " + quoted(VDBFUSE_TOOL) + " " +
-                              arguments + " >" + quoted(out) + " 2>" + quoted(err);
+  const std::string command = "cd " + quoted(folder.path()) + " && " + before + " && " +
+                              quoted(VDBFUSE_TOOL) + " " + arguments + " >" + quoted(out) + " 2>" +
+                              quoted(err);
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
 }

@@ -153,13 +153,19 @@ void resolve(Request& r) {
 }
 
 void writeOutputs(const Request& request, const Reconstruction& result, const FuseContext& context) {
+  std::vector<Output> outputs;
   if (!request.grids.empty()) {
-    std::vector<const ScalarGrid*> grids;
-    for (const ScalarGrid& grid : result.grids) grids.push_back(&grid);
-    writeGrids(request.grids, grids);
+    outputs.push_back({request.grids, [&](const fs::path& path) {
+                         std::vector<const ScalarGrid*> grids;
+                         for (const ScalarGrid& grid : result.grids) grids.push_back(&grid);
+                         writeGrids(path, grids);
+                       }});
   }
-  if (!request.json.empty()) writeFuseJson(request.json, result, context);
-  writeMesh(request.output, result.mesh);
+  if (!request.json.empty()) {
+    outputs.push_back({request.json, [&](const fs::path& path) { writeFuseJson(path, result, context); }});
+  }
+  outputs.push_back({request.output, [&](const fs::path& path) { writeMesh(path, result.mesh); }});
+  writeTogether(outputs);
 }
 
 void fuse(Request request) {

@@ -74,6 +74,7 @@ Json calibrationJson(const CalibrationReport& c) {
   return {{"noise_scale", c.noise_scale},
           {"noise_law", lawName(c.noise_exponent)},
           {"median_depth", c.median_depth},
+          {"point_spacing", c.point_spacing},
           {"near", c.near},
           {"far", c.far},
           {"miss_rate", c.miss_rate},

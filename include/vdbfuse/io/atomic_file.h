@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <vector>
 
 namespace vdbfuse {
 
@@ -26,5 +28,16 @@ class AtomicFile {
   std::filesystem::path temporary_;
   bool committed_ = false;
 };
+
+/// A file to write and how: `write` gets the path of a temporary with the same extension.
+struct Output {
+  std::filesystem::path target;
+  std::function<void(const std::filesystem::path& temporary)> write;
+};
+
+/// Writes all of them before the first one is put in place: a disk that fills up leaves none, and the files
+/// that were there survive. Throws what `write` throws, with the target's name in place of the temporary's;
+/// IoError.
+void writeTogether(const std::vector<Output>& outputs);
 
 }  // namespace vdbfuse

@@ -62,6 +62,7 @@ struct CalibrationReport {
   double noise_scale = 0;  ///< at the median depth
   int noise_exponent = 0;  ///< of depth: 0, 1 or 2
   double median_depth = 0;
+  double point_spacing = 0;  ///< distance of neighbouring measurements in the world
   double miss_rate = 0;
   double outlier_share = 0;
   double near = 0, far = 0;
