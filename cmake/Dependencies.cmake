@@ -19,6 +19,7 @@ endblock()
 find_package(flann CONFIG REQUIRED)
 find_library(VDBFUSE_LZ4_LIBRARY lz4 REQUIRED)
 
+find_package(hwy CONFIG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET GLOBAL spng)

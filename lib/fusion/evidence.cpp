@@ -4,9 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include "fusion/likelihood_ratio.h"
 #include "fusion/prepared_view.h"
-#include "fusion/visibility_integral.h"
+#include "fusion/testimony_sum.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 
@@ -14,8 +13,6 @@ namespace vdbfuse {
 namespace {
 
 constexpr double kMinMissRate = 0.2;
-// Points that one thread works on at a time: their sums stay in the cache.
-constexpr std::size_t kBlock = 512;
 constexpr std::size_t kCellsPerTask = 1024;
 
 double totalWeight(const JudgedViews& judged) {
@@ -24,94 +21,26 @@ double totalWeight(const JudgedViews& judged) {
   return sum;
 }
 
-// Adds up all views' testimony at a block of points, for one rule.
+// Adds up all views' testimony at blocks of points.
 class Combiner {
  public:
   Combiner(const JudgedViews& judged, const EvidenceOptions& options)
-      : options_(options),
-        sensor_(judged.sensor),
-        views_(prepare(judged)),
-        ratio_(judged.sensor),
-        integral_(options.visibility_prior, options.rule == EvidenceRule::Outside ? options.visibility : 1.0,
-                  totalWeight(judged)),
-        no_return_(static_cast<float>(logNoReturnRatio(judged.miss_rate))) {}
+      : views_(prepare(judged)), sum_(judged.sensor, judged.miss_rate, options, totalWeight(judged)) {}
 
-  // out[i] = evidence at points[i]; at most kBlock points.
+  // out[i] = evidence at points[i]; at most a block of them.
   void combine(std::span<const Eigen::Vector3d> points, float* out) const {
-    if (options_.rule == EvidenceRule::Constant) {
-      std::fill_n(out, points.size(), static_cast<float>(-options_.balloon));
-    } else if (options_.rule == EvidenceRule::Paper) {
-      combinePaper(points, out);
-    } else {
-      combineOutside(points, out);
-    }
+    const PointBlock block(points);
+    std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()),
+        empties(points.size());
+    const TestimonySums sums{nodes, reports, empties};
+    for (const PreparedView& view : views_)
+      sum_.add(view, block, static_cast<float>(view.view->weight), sums);
+    sum_.finish(sums, out);
   }
 
  private:
-  void combineOutside(std::span<const Eigen::Vector3d> points, float* out) const {
-    const std::size_t nodes = static_cast<std::size_t>(integral_.nodeCount());
-    std::vector<float> sums(points.size() * nodes, 0.0f), reports(points.size(), 0.0f);
-    std::vector<float> no_returns_left(points.size(), static_cast<float>(options_.max_no_returns));
-    for (const PreparedView& prepared : views_) {
-      const JudgedView& view = *prepared.view;
-      const float weight = static_cast<float>(view.weight);
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::optional<Sighting> seen = prepared.projector(points[i]);
-        if (!seen) continue;
-        const float measured = view.depth(seen->x, seen->y);
-        if (measured != kInvalidDepth) {
-          integral_.add(logRatio(prepared, *seen, measured), weight, &sums[i * nodes]);
-          reports[i] += weight;
-        } else if (view.no_return(seen->x, seen->y) && no_returns_left[i] > 0) {
-          integral_.add(no_return_, std::min(weight, no_returns_left[i]), &sums[i * nodes]);
-          no_returns_left[i] -= weight;
-        }
-      }
-    }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out[i] = static_cast<float>(prior(reports[i]) + integral_.logMean(&sums[i * nodes]));
-    }
-  }
-
-  // π = t/(t + (1 − t) L): the probability that the sensor does not see past the point.
-  void combinePaper(std::span<const Eigen::Vector3d> points, float* out) const {
-    std::vector<double> log_hidden(points.size(), 0.0);
-    std::vector<bool> reported(points.size(), false);
-    for (const PreparedView& prepared : views_) {
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::optional<Sighting> seen = prepared.projector(points[i]);
-        if (!seen) continue;
-        const float measured = prepared.view->depth(seen->x, seen->y);
-        if (measured == kInvalidDepth) continue;
-        const double t =
-            std::clamp((seen->depth - sensor_.near) / (sensor_.far - sensor_.near), 0.001, 0.999);
-        const double odds = std::log((1 - t) / t) + logRatio(prepared, *seen, measured);
-        log_hidden[i] -= odds > 30 ? odds : std::log1p(std::exp(odds));
-        reported[i] = true;
-      }
-    }
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      out[i] = reported[i] ? static_cast<float>(std::log(-std::expm1(log_hidden[i])) - log_hidden[i])
-                           : static_cast<float>(options_.prior);
-    }
-  }
-
-  float logRatio(const PreparedView& prepared, const Sighting& seen, float measured) const {
-    return ratio_.log(measured, prepared.noise.at(measured), prepared.view->outlier(seen.x, seen.y),
-                      static_cast<float>(seen.depth));
-  }
-
-  double prior(double reports) const {
-    if (options_.rule == EvidenceRule::NoSelfOcclusion) return 0.0;
-    return std::min(options_.prior, integral_.halfDenial(reports));
-  }
-
-  EvidenceOptions options_;
-  SensorModel sensor_;
   std::vector<PreparedView> views_;
-  LikelihoodRatio ratio_;
-  VisibilityIntegral integral_;
-  float no_return_;
+  TestimonySum sum_;
 };
 
 // Samples a side of a cell: one in the middle of a finest cell.
@@ -132,8 +61,8 @@ void appendSamples(const Octree& octree, std::size_t cell, std::vector<Eigen::Ve
 
 std::vector<float> combineAll(const Combiner& combiner, std::span<const Eigen::Vector3d> points) {
   std::vector<float> values(points.size());
-  for (std::size_t first = 0; first < points.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, points.size() - first);
+  for (std::size_t first = 0; first < points.size(); first += PointBlock::kCapacity) {
+    const std::size_t count = std::min(PointBlock::kCapacity, points.size() - first);
     combiner.combine(points.subspan(first, count), values.data() + first);
   }
   return values;
@@ -169,16 +98,6 @@ std::vector<std::string> validate(const EvidenceOptions& options) {
   if (!(options.balloon >= 0)) problems.emplace_back("balloon must not be negative");
   if (options.max_no_returns < 0) problems.emplace_back("max_no_returns must not be negative");
   return problems;
-}
-
-double logLikelihoodRatio(const SensorModel& sensor, double measured, double noise, double outlier,
-                          double depth) {
-  const double t = std::clamp((depth - sensor.near) / (sensor.far - sensor.near), 0.001, 0.999);
-  const auto cdf = [&](double at) { return noiseCdf(sensor.shape, (at - measured) / noise); };
-  const double a =
-      ((1 - outlier) * std::max(cdf(sensor.far) - cdf(depth), 0.0) + outlier * (1 - t)) / (1 - t);
-  const double b = ((1 - outlier) * std::max(cdf(depth) - cdf(sensor.near), 0.0) + outlier * t) / t;
-  return std::log(a / b);
 }
 
 double logNoReturnRatio(double miss_rate) {

@@ -10,26 +10,37 @@
 
 namespace vdbfuse {
 
-/// Noise scale of a look-up against depth, tabulated over [near, far]: lookupNoise() to 0.1 %.
+/// Noise scale of a look-up against depth, tabulated over [near, far]: lookupNoise() to 0.1 %. With an
+/// infinite range it is computed each time.
 class NoiseTable {
  public:
+  static constexpr int kSteps = 512;
+
   NoiseTable(const SensorModel& sensor, const Projection& projection)
-      : near_(sensor.near), per_step_(kSteps / (sensor.far - sensor.near)) {
+      : near_(static_cast<float>(sensor.near)),
+        per_step_(static_cast<float>(kSteps / (sensor.far - sensor.near))),
+        sensor_(&sensor),
+        projection_(&projection) {
+    if (!(per_step_ > 0)) return;
     for (int i = 0; i <= kSteps; ++i) {
-      values_[static_cast<std::size_t>(i)] =
-          static_cast<float>(lookupNoise(sensor, projection, near_ + i / per_step_));
+      const double depth = sensor.near + i * (sensor.far - sensor.near) / kSteps;
+      values_[static_cast<std::size_t>(i)] = static_cast<float>(lookupNoise(sensor, projection, depth));
     }
   }
   float at(float depth) const {
-    const double place = std::clamp((depth - near_) * per_step_, 0.0, kSteps - 1e-9);
+    if (!(per_step_ > 0)) return static_cast<float>(lookupNoise(*sensor_, *projection_, depth));
+    const float place = std::clamp((depth - near_) * per_step_, 0.0f, kSteps - 0.001f);
     const std::size_t i = static_cast<std::size_t>(place);
-    const float f = static_cast<float>(place - static_cast<double>(i));
-    return values_[i] + f * (values_[i + 1] - values_[i]);
+    return values_[i] + (place - static_cast<float>(i)) * (values_[i + 1] - values_[i]);
   }
+  const float* values() const { return values_.data(); }
+  float near() const { return near_; }
+  float perStep() const { return per_step_; }
 
  private:
-  static constexpr int kSteps = 512;
-  double near_, per_step_;
+  float near_, per_step_;
+  const SensorModel* sensor_;
+  const Projection* projection_;
   std::array<float, kSteps + 1> values_{};
 };
 
@@ -42,6 +53,20 @@ struct PreparedView {
   Projector projector;
   NoiseTable noise;
 };
+
+/// visit(depth, share of the inliers) for all that a pixel may have measured. REQUIRES: its depth is valid.
+template <class Visit>
+void forEachHypothesis(const PreparedView& prepared, std::size_t pixel, const Visit& visit) {
+  const JudgedView& view = *prepared.view;
+  float left = 1.0f;
+  for (const DepthAlternative& alternative : view.alternatives) {
+    const float share = alternative.share.data()[pixel];
+    if (alternative.depth.data()[pixel] == kInvalidDepth || share <= 0) continue;
+    visit(alternative.depth.data()[pixel], share);
+    left -= share;
+  }
+  visit(view.depth.data()[pixel], left);
+}
 
 inline std::vector<PreparedView> prepare(const JudgedViews& judged) {
   std::vector<PreparedView> prepared;

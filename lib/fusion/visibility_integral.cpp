@@ -42,12 +42,8 @@ VisibilityIntegral::VisibilityIntegral(double a, double visibility, double views
 }
 
 void VisibilityIntegral::add(float log_ratio, float weight, float* sums) const {
-  const float place = (std::clamp(log_ratio, -kRange, kRange) + kRange) * kStepsPerUnit;
-  const int row = static_cast<int>(place);
-  const float f = place - static_cast<float>(row);
-  const float* low = table_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(nodes_);
-  const float* high = low + nodes_;
-  for (int k = 0; k < nodes_; ++k) sums[k] += weight * (low[k] + f * (high[k] - low[k]));
+  const Row row = rowOf(log_ratio);
+  for (int k = 0; k < nodes_; ++k) sums[k] += weight * (row.low[k] + row.share * (row.high[k] - row.low[k]));
 }
 
 double VisibilityIntegral::logMean(const float* sums) const {

@@ -3,6 +3,7 @@
 // w_i log(1 − v_k + v_k L_i), so that views can be added in any order, and taken away again.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -17,6 +18,19 @@ class VisibilityIntegral {
 
   /// sums[k] += weight · log(1 − v_k + v_k L) for all nodes; from a table, to 2e-4.
   void add(float log_ratio, float weight, float* sums) const;
+
+  /// Where the table holds log(1 − v_k + v_k L): between two rows of nodeCount() values, `share` of the way.
+  struct Row {
+    const float* low;
+    const float* high;
+    float share;
+  };
+  Row rowOf(float log_ratio) const {
+    const float place = (std::clamp(log_ratio, -kRange, kRange) + kRange) * kStepsPerUnit;
+    const int row = static_cast<int>(place);
+    const float* low = table_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(nodes_);
+    return {low, low + nodes_, place - static_cast<float>(row)};
+  }
 
   /// log of the mean over the nodes of e^sums[k].
   double logMean(const float* sums) const;

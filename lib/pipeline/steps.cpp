@@ -46,6 +46,8 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(!options.domain || !options.domain->isEmpty(), "the box of the domain is empty");
   require(options.max_level >= 0 && options.max_level <= 6, "max_level must lie in 0 ... 6");
   require(options.noise_scale >= 0, "noise_scale must be positive");
+  require(options.noise_scale == 0 || !options.noise, "noise and noise_scale exclude each other");
+  require(options.thickness >= 0, "thickness must be positive");
   require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
           "outliers must lie in [0, 1)");
   require(options.mu >= 0 && options.lambda >= 0, "mu and lambda must not be negative");
@@ -83,10 +85,11 @@ SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& gra
                             CalibrationReport& report, const Progress& progress) {
   const NoiseLaw guess = guessNoise(views, depths.median);
   const NoiseCalibration found = calibrateNoise(views, graph, guess, depths.median, progress);
-  SensorModel sensor{options.noise_shape, found.noise, depths.near, depths.far};
+  SensorModel sensor{options.noise_shape, options.noise.value_or(found.noise), depths.near, depths.far,
+                     options.thickness};
   if (options.noise_scale > 0) sensor.noise = lawThrough(options.noise_scale, depths.median, found.exponent);
   report.noise_scale = sensor.noise.at(depths.median);
-  report.noise_exponent = found.exponent;
+  report.noise_exponent = options.noise ? -1 : found.exponent;
   report.median_depth = depths.median;
   return sensor;
 }

@@ -12,6 +12,7 @@ JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double o
     JudgedView judged;
     static_cast<ViewHeader&>(judged) = std::move(static_cast<ViewHeader&>(view));
     judged.depth = std::move(view.map.depth);
+    judged.alternatives = std::move(view.map.alternatives);
     judged.outlier = Image<float>(judged.depth.width(), judged.depth.height(), static_cast<float>(outlier));
     judged.incidence = Image<float>(judged.depth.width(), judged.depth.height());
     judged.no_return = Image<std::uint8_t>(judged.depth.width(), judged.depth.height());

@@ -27,6 +27,11 @@ std::vector<std::string> validate(const View& view) {
   if (!view.map.confidence.empty() && !view.map.confidence.sameSize(depth)) {
     problems.emplace_back("confidence and depth differ in size");
   }
+  if (view.map.alternatives.size() > 3) problems.emplace_back("there are more than three alternative depths");
+  for (const DepthAlternative& alternative : view.map.alternatives) {
+    if (!alternative.depth.sameSize(depth) || !alternative.share.sameSize(depth))
+      problems.emplace_back("an alternative depth or its share differs from the depth in size");
+  }
   if (rotationError(view.world_from_camera.linear()) > 1e-6 ||
       !view.world_from_camera.translation().allFinite())
     problems.emplace_back("the pose is not a rigid transform");

@@ -7,17 +7,18 @@
 
 #include "vdbfuse/base/random.h"
 #include "vdbfuse/fusion/evidence.h"
+#include "vdbfuse/fusion/likelihood.h"
 
 namespace vdbfuse {
 namespace {
 
-constexpr NoiseShape kShapes[] = {NoiseShape::Gaussian, NoiseShape::Logistic, NoiseShape::Laplace};
+const NoiseShape kShapes[] = {gaussianNoise(), logisticNoise(), laplaceNoise()};
 constexpr double kNear = 0.5, kFar = 2.5;
 
-SensorModel sensorOf(NoiseShape shape) { return {shape, {0.01, 0, 0}, kNear, kFar}; }
+SensorModel sensorOf(const NoiseShape& shape) { return {shape, {0.01, 0, 0}, kNear, kFar}; }
 
 TEST(LikelihoodRatio, TheTableAgreesWithTheFormula) {
-  for (const NoiseShape shape : kShapes) {
+  for (const NoiseShape& shape : kShapes) {
     const SensorModel sensor = sensorOf(shape);
     const LikelihoodRatio table(sensor);
     Random random(1);
@@ -26,28 +27,28 @@ TEST(LikelihoodRatio, TheTableAgreesWithTheFormula) {
       const double measured = static_cast<float>(random.uniform(kNear, kFar));
       const double depth = static_cast<float>(i % 2 == 0 ? measured + noise * random.uniform(-6, 6)
                                                          : random.uniform(kNear, kFar));
-      const double exact = logLikelihoodRatio(sensor, measured, noise, outlier, depth);
+      const double exact = logLikelihoodRatio(sensor, {measured, noise, outlier}, depth);
       ASSERT_NEAR(table.log(static_cast<float>(measured), static_cast<float>(noise),
                             static_cast<float>(outlier), static_cast<float>(depth)),
                   exact, 2e-3)
-          << "shape " << static_cast<int>(shape) << ", " << (depth - measured) / noise << " scales behind";
+          << shape.name << ", " << (depth - measured) / noise << " scales behind";
     }
   }
 }
 
 TEST(LikelihoodRatio, InFrontOfTheMeasurementAndBehindItTheOutliersSetTheLimit) {
-  for (const NoiseShape shape : kShapes) {
+  for (const NoiseShape& shape : kShapes) {
     for (const double outlier : {0.003, 0.1}) {
       const SensorModel sensor = sensorOf(shape);
       const double measured = 1.5;
       for (const double depth : {0.7, 1.0, 1.2}) {
         const double t = (depth - kNear) / (kFar - kNear);
-        EXPECT_NEAR(logLikelihoodRatio(sensor, measured, 0.01, outlier, depth),
+        EXPECT_NEAR(logLikelihoodRatio(sensor, {measured, 0.01, outlier}, depth),
                     std::log((1 - outlier * t) / (outlier * (1 - t))), 1e-6);
       }
       for (const double depth : {1.8, 2.0, 2.3}) {
         const double t = (depth - kNear) / (kFar - kNear);
-        EXPECT_NEAR(logLikelihoodRatio(sensor, measured, 0.01, outlier, depth),
+        EXPECT_NEAR(logLikelihoodRatio(sensor, {measured, 0.01, outlier}, depth),
                     -std::log((1 - outlier * (1 - t)) / (outlier * t)), 1e-6);
       }
     }
@@ -56,7 +57,7 @@ TEST(LikelihoodRatio, InFrontOfTheMeasurementAndBehindItTheOutliersSetTheLimit) 
 
 TEST(LikelihoodRatio, IsTheRatioOfTheTwoIntegralsOverWhereTheSurfaceMayBe) {
   // p(D | seen past x) = mean of p(D | D*) over D* in [d, far], p(D | not) over [near, d], by midpoints.
-  const SensorModel sensor = sensorOf(NoiseShape::Logistic);
+  const SensorModel sensor = sensorOf(logisticNoise());
   const double noise = 0.05, outlier = 0.05, measured = 1.3;
   const auto density = [&](double truth) {
     const double u = (measured - truth) / noise;
@@ -69,7 +70,7 @@ TEST(LikelihoodRatio, IsTheRatioOfTheTwoIntegralsOverWhereTheSurfaceMayBe) {
     return sum / kSteps;
   };
   for (const double depth : {0.7, 1.1, 1.25, 1.3, 1.35, 1.5, 2.2}) {
-    EXPECT_NEAR(logLikelihoodRatio(sensor, measured, noise, outlier, depth),
+    EXPECT_NEAR(logLikelihoodRatio(sensor, {measured, noise, outlier}, depth),
                 std::log(mean(depth, kFar) / mean(kNear, depth)), 1e-5);
   }
 }
@@ -77,19 +78,21 @@ TEST(LikelihoodRatio, IsTheRatioOfTheTwoIntegralsOverWhereTheSurfaceMayBe) {
 // Equation (11), one sensor: logistic noise, no outliers. With t/(1 − t), the flat prior's part, taken away
 // what is left is (D − d)/w, up to what the ends of [near, far] cut off, e^(−20) here.
 TEST(LikelihoodRatio, WithLogisticNoiseAndNoOutliersIsTheCurlessLevoyTermTimesThePriorOdds) {
-  const SensorModel sensor = sensorOf(NoiseShape::Logistic);
+  const SensorModel sensor = sensorOf(logisticNoise());
   const double noise = 0.02;
   for (double u = -8; u <= 8; u += 0.5) {
     const double measured = 1.4, depth = measured - u * noise, t = (depth - kNear) / (kFar - kNear);
-    EXPECT_NEAR(logLikelihoodRatio(sensor, measured, noise, 0.0, depth) - std::log(t / (1 - t)), u, 1e-5);
+    EXPECT_NEAR(logLikelihoodRatio(sensor, {measured, noise, 0.0}, depth) - std::log(t / (1 - t)), u, 1e-5);
   }
 }
 
 TEST(LikelihoodRatio, OutliersTruncateTheSum) {
   // Saturates at ± log((2 − ε)/ε) where t = ½, and is linear well below it.
-  SensorModel sensor = sensorOf(NoiseShape::Logistic);
+  SensorModel sensor = sensorOf(logisticNoise());
   const double outlier = 0.01, limit = std::log((2 - outlier) / outlier);
-  const auto at = [&](double u) { return logLikelihoodRatio(sensor, 1.5 + u * 0.005, 0.005, outlier, 1.5); };
+  const auto at = [&](double u) {
+    return logLikelihoodRatio(sensor, {1.5 + u * 0.005, 0.005, outlier}, 1.5);
+  };
   EXPECT_NEAR(at(100), limit, 1e-6);
   EXPECT_NEAR(at(-100), -limit, 1e-6);
   EXPECT_NEAR(at(1), 1, 0.03);

@@ -100,7 +100,7 @@ struct Plane {
     View view;
     view.projection = Orthographic{24, 24, 0, 1, 0, 1};
     view.map.depth = Image<float>(24, 24, depth);
-    judged = believe({view}, {NoiseShape::Gaussian, {0.1, 0, 0}, 1, 20});
+    judged = believe({view}, {gaussianNoise(), {0.1, 0, 0}, 1, 20});
     judged.views[0].incidence = Image<float>(24, 24, 1.0f);
     octree =
         buildOctree(supportAt({}), 0.5f, Box(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(22, 22, 22)), {0});

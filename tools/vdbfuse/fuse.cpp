@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
+#include <optional>
 
 #include "commands.h"
 #include "fuse_report.h"
@@ -27,8 +28,7 @@ const std::map<std::string, EvidenceRule> kRules = {{"outside", EvidenceRule::Ou
                                                     {"paper", EvidenceRule::Paper},
                                                     {"no-self-occlusion", EvidenceRule::NoSelfOcclusion},
                                                     {"constant", EvidenceRule::Constant}};
-const std::map<std::string, NoiseShape> kShapes = {
-    {"gaussian", NoiseShape::Gaussian}, {"logistic", NoiseShape::Logistic}, {"laplace", NoiseShape::Laplace}};
+const std::vector<std::string> kShapes = {"gaussian", "logistic", "laplace"};
 using NoReturn = JudgeOptions::NoReturn;
 const std::map<std::string, NoReturn> kNoReturns = {
     {"ignore", NoReturn::Ignore}, {"free", NoReturn::Free}, {"auto", NoReturn::Auto}};
@@ -38,7 +38,7 @@ struct Request {
   ReadOptions read;
   ReconstructOptions reconstruct;
   std::vector<double> box;
-  std::string border = "auto", outliers = "auto";
+  std::string border = "auto", outliers = "auto", noise = "gaussian", sensor, thickness = "off";
   std::size_t views = 0;
   int threads = 0;
   bool no_reliability = false, overwrite = false, quiet = false;
@@ -69,10 +69,20 @@ void addGridOptions(CLI::App& app, Request& r) {
       ->capture_default_str();
 }
 
+std::vector<std::string> presetNames() {
+  std::vector<std::string> names;
+  for (const SensorPreset& preset : sensorPresets()) names.push_back(preset.name);
+  return names;
+}
+
 void addSensorOptions(CLI::App& app, Request& r) {
   addReadOptions(app, r.read);
   app.add_option("--views", r.views, "Use the first N views only")->check(CLI::PositiveNumber);
-  choice(app, "--noise", r.reconstruct.noise_shape, kShapes, "Shape of the noise of depths");
+  app.add_option("--noise", r.noise, "Shape of the noise of depths")
+      ->check(CLI::IsMember(kShapes))
+      ->capture_default_str();
+  app.add_option("--sensor", r.sensor, "Noise of a known sensor, poses in metres; default: from the overlap")
+      ->check(CLI::IsMember(presetNames()));
   app.add_option("--noise-scale", r.reconstruct.noise_scale,
                  "Standard deviation at the median depth; default: from the overlap of the views")
       ->check(CLI::PositiveNumber);
@@ -95,6 +105,9 @@ void addEnergyOptions(CLI::App& app, Request& r) {
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--prior", o.evidence.prior, "Largest prior log-odds of outside")->capture_default_str();
   app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")
+      ->capture_default_str();
+  app.add_option("--thickness", r.thickness,
+                 "Behind a surface, how far solid is to be expected, length; off: any depth alike")
       ->capture_default_str();
   app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.3/voxel")
       ->check(CLI::PositiveNumber);
@@ -122,16 +135,28 @@ void requireNew(const fs::path& path, const Request& request) {
   const AtomicFile can_be_written(path);  // never committed: leaves nothing
 }
 
-double parseShare(const std::string& text) {
+std::optional<double> parseNumber(const std::string& text) {
   std::size_t used = 0;
-  double value = -1;
   try {
-    value = std::stod(text, &used);
+    const double value = std::stod(text, &used);
+    if (used == text.size()) return value;
   } catch (const std::exception&) {
   }
-  if (used != text.size() || !(value >= 0 && value < 1)) {
+  return std::nullopt;
+}
+
+double parseShare(const std::string& text) {
+  const double value = parseNumber(text).value_or(-1);
+  if (!(value >= 0 && value < 1))
     throw InvalidArgument("--outliers", "expected 'auto' or a share in [0, 1), found '" + text + "'");
-  }
+  return value;
+}
+
+double parseThickness(const std::string& text) {
+  if (text == "off") return 0;
+  const double value = parseNumber(text).value_or(-1);
+  if (!(value > 0))
+    throw InvalidArgument("--thickness", "expected 'off' or a positive length, found '" + text + "'");
   return value;
 }
 
@@ -148,6 +173,9 @@ void resolve(Request& r) {
   constexpr double kBelieveAll = 0.01;
   if (r.no_reliability) o.outliers = kBelieveAll;
   if (r.outliers != "auto") o.outliers = parseShare(r.outliers);
+  o.noise_shape = noiseShape(r.noise);
+  if (!r.sensor.empty()) o.noise = sensorPreset(r.sensor).noise;
+  o.thickness = parseThickness(r.thickness);
   if (!r.grids.empty()) o.grids = ReconstructOptions::Grids::Keep;
   r.read.color = ReadOptions::Color::Skip;
 }

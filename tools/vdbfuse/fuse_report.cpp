@@ -26,10 +26,6 @@ const char* nameOf(Border border) {
   return border == Border::Outside ? "outside" : border == Border::Solid ? "solid" : "free";
 }
 
-const char* nameOf(NoiseShape shape) {
-  return shape == NoiseShape::Gaussian ? "gaussian" : shape == NoiseShape::Logistic ? "logistic" : "laplace";
-}
-
 const char* nameOf(Method method) { return method == Method::Visibility ? "visibility" : "tsdf"; }
 
 const char* nameOf(ConfidenceDirection direction) {
@@ -58,7 +54,7 @@ Json optionsJson(const Reconstruction& result, const ReconstructOptions& o) {
   Json j = {{"method", nameOf(o.method)},
             {"voxel", result.grid.voxel},
             {"bbox", json(result.grid.domain)},
-            {"noise", nameOf(o.noise_shape)},
+            {"noise", o.noise_shape.name},
             {"outliers", o.outliers ? Json(*o.outliers) : Json("auto")},
             {"rule", nameOf(o.evidence.rule)},
             {"visibility_prior", o.evidence.visibility_prior},

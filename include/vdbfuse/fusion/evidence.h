@@ -19,9 +19,9 @@ enum class EvidenceRule {
   Outside,
   /// The paper's equation (5): visible from at least one sensor, e = log((1 − Π π_i)/Π π_i).
   Paper,
-  /// No self-occlusion (equations 10 and 11): v = 1, e = Σ w_i log L_i. With logistic noise and no outliers
-  /// this is the
-  /// Curless–Levoy sum.
+  /// No self-occlusion (equations 10 and 11): an outside point is seen by every sensor,
+  /// e = Σ w_i log((1 − π_i)/π_i). With logistic noise, no outliers and an infinite range: the Curless–Levoy
+  /// sum.
   NoSelfOcclusion,
   /// Constant ballooning: e = −balloon everywhere. The baseline of the paper's Fig. 4.
   Constant,
@@ -44,13 +44,6 @@ struct EvidenceOptions {
 };
 
 std::vector<std::string> validate(const EvidenceOptions& options);
-
-/// log L = log p(D | sensor sees past x) / p(D | it does not), for a measurement D with noise scale s and
-/// outlier probability ε of a sensor with range [near, far], at depth d (section 4):
-///   A = [(1−ε)(F((far−D)/s) − F((d−D)/s)) + ε(1−t)]/(1−t),  B = [(1−ε)(F((d−D)/s) − F((near−D)/s)) + ε t]/t,
-///   t = (d − near)/(far − near), kept within [0.001, 0.999];  L = A/B.
-double logLikelihoodRatio(const SensorModel& sensor, double measured, double noise, double outlier,
-                          double depth);
 
 /// log L of a look that met nothing: L = (q + (1−q) m)/m with q = ½ and the miss rate m not below 0.2.
 double logNoReturnRatio(double miss_rate);

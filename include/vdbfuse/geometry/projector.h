@@ -2,6 +2,7 @@
 // Projection of many world points into one view: the transform prepared once, the common pinhole inlined.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <variant>
 
@@ -15,6 +16,13 @@ namespace vdbfuse {
 struct Sighting {
   int x = 0, y = 0;  ///< nearest pixel, inside the image
   double depth = 0;  ///< of the point, in the sensor's own measure
+};
+
+/// An undistorted pinhole as a 3×4 matrix in single precision for points relative to some origin: rows
+/// (u·depth, v·depth, depth).
+struct PinholeRows {
+  std::array<std::array<float, 4>, 3> rows{};
+  int width = 0, height = 0;
 };
 
 class Projector {
@@ -37,6 +45,23 @@ class Projector {
     const double inverse = 1.0 / p.z();
     return inside(pinhole_->fx * p.x() * inverse + pinhole_->cx,
                   pinhole_->fy * p.y() * inverse + pinhole_->cy, p.z());
+  }
+
+  /// For loops over many points near `origin`; nothing for other projections.
+  std::optional<PinholeRows> rowsFrom(const Eigen::Vector3d& origin) const {
+    if (!pinhole_) return std::nullopt;
+    Eigen::Matrix3d camera = Eigen::Matrix3d::Identity();
+    camera(0, 0) = pinhole_->fx, camera(0, 2) = pinhole_->cx;
+    camera(1, 1) = pinhole_->fy, camera(1, 2) = pinhole_->cy;
+    const Eigen::Matrix3d linear = camera * rotation_;
+    const Eigen::Vector3d constant = camera * (rotation_ * origin + translation_);
+    PinholeRows result{{}, width_, height_};
+    for (int r = 0; r < 3; ++r) {
+      std::array<float, 4>& row = result.rows[static_cast<std::size_t>(r)];
+      for (int c = 0; c < 3; ++c) row[static_cast<std::size_t>(c)] = static_cast<float>(linear(r, c));
+      row[3] = static_cast<float>(constant[r]);
+    }
+    return result;
   }
 
  private:

@@ -35,10 +35,12 @@ struct ReconstructOptions {
   std::optional<Border> border;
 
   // The sensor.
-  NoiseShape noise_shape = NoiseShape::Gaussian;
-  double noise_scale = 0.0;  ///< standard deviation at the median depth; default: from overlapping views
+  NoiseShape noise_shape = gaussianNoise();
+  std::optional<NoiseLaw> noise;  ///< of a known sensor; default: from overlapping views
+  double noise_scale = 0.0;       ///< standard deviation at the median depth; default: from overlapping views
   std::optional<double>
-      outliers;  ///< outlier share, the same for every pixel; default: judged pixel by pixel
+      outliers;            ///< outlier share, the same for every pixel; default: judged pixel by pixel
+  double thickness = 0.0;  ///< τ of the depth prior, length (SensorModel::thickness); 0: flat
   JudgeOptions judge;
 
   // The energy.
@@ -60,7 +62,7 @@ std::vector<std::string> validate(const ReconstructOptions& options);
 /// What was found out about the sensor.
 struct CalibrationReport {
   double noise_scale = 0;  ///< at the median depth
-  int noise_exponent = 0;  ///< of depth: 0, 1 or 2
+  int noise_exponent = 0;  ///< of depth: 0, 1 or 2; −1: the law was given
   double median_depth = 0;
   double point_spacing = 0;  ///< distance of neighbouring measurements in the world
   double miss_rate = 0;

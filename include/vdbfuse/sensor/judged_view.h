@@ -17,6 +17,8 @@ struct JudgedView : ViewHeader {
   Image<float> depth;
   /// ε of each pixel: probability that its depth has nothing to do with the surface. Same size as `depth`.
   Image<float> outlier;
+  /// Other depths of the same pixels. ε is the probability that none of them all is right.
+  std::vector<DepthAlternative> alternatives;
   /// Cosine between the optic ray and the surface normal; 0 where the normal is not known. Same size as
   /// `depth`.
   Image<float> incidence;

@@ -15,6 +15,13 @@ namespace vdbfuse {
 /// The one representation of "nothing measured here". Valid depths are finite and > 0.
 inline constexpr float kInvalidDepth = 0.0f;
 
+/// A second, third or fourth depth that a pixel may have measured (Hernández et al. 2007, sec. 3.1: the other
+/// maxima of a correlation curve).
+struct DepthAlternative {
+  Image<float> depth;  ///< kInvalidDepth where there is none
+  Image<float> share;  ///< probability that this one is right rather than the others, in [0, 1)
+};
+
 /// Depth in the sensor's own measure (see geometry/projection.h), in the unit of the poses.
 struct DepthMap {
   Image<float> depth;
@@ -22,6 +29,8 @@ struct DepthMap {
   Image<float> confidence;
   /// Same size as `depth` or of a size of its own; empty when there is none.
   Image<Rgb8> color;
+  /// Up to three, of the size of `depth`; `depth` itself has the share that they leave.
+  std::vector<DepthAlternative> alternatives;
 };
 
 /// Turns every non-finite, zero or negative depth into kInvalidDepth. Readers call it once.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The inner loops of the evidence, for the best instruction set of the machine.
+#pragma once
+
+#include "fusion/likelihood_ratio.h"
+#include "fusion/point_block.h"
+#include "fusion/prepared_view.h"
+#include "fusion/visibility_integral.h"
+
+namespace vdbfuse {
+
+/// Projects the points of a block. Pinholes without distortion: single precision, many points at a time; a
+/// point within 1e-4 pixels of the border between two pixels may be given to either.
+BlockLook look(const PreparedView& view, const PointBlock& block);
+
+/// log L of every point whose pixel is measured: LikelihoodRatio of all its hypotheses.
+BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, const BlockLook& look,
+                       std::size_t size);
+
+/// sums[i · nodes + k] += weight · log(1 − v_k + v_k L_i) where measured.
+void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,
+                std::size_t size, float* sums);
+
+/// Name of the instruction set in use.
+const char* simdTarget();
+
+}  // namespace vdbfuse

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fusion/testimony_sum.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdbfuse/fusion/likelihood.h"
+
+namespace vdbfuse {
+namespace {
+
+// log(1 + e^x)
+float softplus(float x) { return x > 30 ? x : std::log1p(std::exp(x)); }
+
+Measurement measurementAt(const PreparedView& prepared, std::size_t pixel) {
+  Measurement result(0, 1, prepared.view->outlier.data()[pixel]);
+  result.count = 0;
+  forEachHypothesis(prepared, pixel, [&](float depth, float share) {
+    result.hypotheses[result.count++] = {depth, prepared.noise.at(depth), share};
+  });
+  return result;
+}
+
+}  // namespace
+
+TestimonySums TestimonySums::part(std::size_t first, std::size_t count) const {
+  const std::size_t per_point = nodes.size() / reports.size();
+  return {nodes.subspan(first * per_point, count * per_point), reports.subspan(first, count),
+          empties.subspan(first, count)};
+}
+
+TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const EvidenceOptions& options,
+                           double total_weight)
+    : options_(options),
+      sensor_(sensor),
+      ratio_(sensor),
+      integral_(options.visibility_prior, options.rule == EvidenceRule::Outside ? options.visibility : 1.0,
+                total_weight),
+      no_return_(static_cast<float>(logNoReturnRatio(miss_rate))) {}
+
+void TestimonySum::add(const PreparedView& view, const PointBlock& block, float weight,
+                       const TestimonySums& sums) const {
+  switch (options_.rule) {
+    case EvidenceRule::Outside:
+      return addOutside(view, block, weight, sums);
+    case EvidenceRule::Paper:
+      return addPaper(view, block, weight, sums);
+    case EvidenceRule::NoSelfOcclusion:
+      return addNoSelfOcclusion(view, block, weight, sums);
+    case EvidenceRule::Constant:
+      return;
+  }
+}
+
+void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& block, float weight,
+                              const TestimonySums& sums) const {
+  const BlockLook seen = look(prepared, block);
+  const BlockTestimony said = testify(prepared, ratio_, seen, block.size);
+  accumulate(integral_, said, weight, block.size, sums.nodes.data());
+  const std::uint8_t* no_return = prepared.view->no_return.data();
+  for (std::size_t i = 0; i < block.size; ++i) {
+    sums.reports[i] += weight * said.measured[i];
+    if (seen.pixel[i] >= 0 && said.measured[i] == 0 && no_return[seen.pixel[i]]) sums.empties[i] += weight;
+  }
+}
+
+// Equation (5) needs log Π π_i, π = 1/(1 + odds). Each view counts whole.
+void TestimonySum::addPaper(const PreparedView& prepared, const PointBlock& block, float weight,
+                            const TestimonySums& sums) const {
+  const BlockLook seen = look(prepared, block);
+  const BlockTestimony said = testify(prepared, ratio_, seen, block.size);
+  const float sign = weight > 0 ? 1.0f : -1.0f;
+  for (std::size_t i = 0; i < block.size; ++i) {
+    if (said.measured[i] == 0) continue;
+    const float t = (ratio_.clampDepth(seen.depth[i]) - ratio_.near()) * ratio_.perRange();
+    sums.nodes[i] -= sign * softplus(std::log((1 - t) / t) + said.log_ratio[i]);
+    sums.reports[i] += sign;
+  }
+}
+
+// Equation (10), without a table: what it is compared with is exact.
+void TestimonySum::addNoSelfOcclusion(const PreparedView& prepared, const PointBlock& block, float weight,
+                                      const TestimonySums& sums) const {
+  for (std::size_t i = 0; i < block.size; ++i) {
+    const std::optional<Sighting> seen = prepared.projector(block.point(i));
+    if (!seen || prepared.view->depth(seen->x, seen->y) == kInvalidDepth) continue;
+    const std::size_t pixel = static_cast<std::size_t>(seen->y * prepared.view->depth.width() + seen->x);
+    sums.nodes[i] +=
+        weight * static_cast<float>(logVisibleOdds(sensor_, measurementAt(prepared, pixel), seen->depth));
+    sums.reports[i] += weight;
+  }
+}
+
+float TestimonySum::outside(const float* nodes, float reports, float empties) const {
+  const float counted = std::min(empties, static_cast<float>(options_.max_no_returns));
+  std::vector<float> with(nodes, nodes + nodeCount());
+  if (counted > 0) integral_.add(no_return_, counted, with.data());
+  return static_cast<float>(std::min(options_.prior, integral_.halfDenial(reports)) +
+                            integral_.logMean(with.data()));
+}
+
+void TestimonySum::finish(const TestimonySums& sums, float* evidence) const {
+  for (std::size_t i = 0; i < sums.reports.size(); ++i) {
+    const float* nodes = &sums.nodes[i * nodeCount()];
+    switch (options_.rule) {
+      case EvidenceRule::Outside:
+        evidence[i] = outside(nodes, sums.reports[i], sums.empties[i]);
+        break;
+      case EvidenceRule::Paper:
+        evidence[i] = sums.reports[i] > 0.5f
+                          ? static_cast<float>(std::log(-std::expm1(static_cast<double>(*nodes)))) - *nodes
+                          : static_cast<float>(options_.prior);
+        break;
+      case EvidenceRule::NoSelfOcclusion:
+        evidence[i] = *nodes;
+        break;
+      case EvidenceRule::Constant:
+        evidence[i] = static_cast<float>(-options_.balloon);
+        break;
+    }
+  }
+}
+
+}  // namespace vdbfuse

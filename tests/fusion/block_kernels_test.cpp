@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fusion/block_kernels.h"
+
+#include <gtest/gtest.h>
+
+#include "fusion/scenes.h"
+#include "vdbfuse/fusion/likelihood.h"
+
+namespace vdbfuse {
+namespace {
+
+std::vector<Eigen::Vector3d> randomPoints(std::size_t count, const Eigen::Vector3d& centre, double reach) {
+  std::vector<Eigen::Vector3d> points;
+  Random random(9);
+  for (std::size_t i = 0; i < count; ++i) {
+    points.push_back(centre + Eigen::Vector3d(random.uniform(-reach, reach), random.uniform(-reach, reach),
+                                              random.uniform(-reach, reach)));
+  }
+  return points;
+}
+
+struct OneView {
+  explicit OneView(const Projection& projection = test::cameraFor(64, 0.5, 2.0)) {
+    std::vector<View> views = test::sphereViews(1);
+    test::addNoise(views, {0.01, 0, 0}, 3);
+    views.front().projection = projection;
+    judged = believe(std::move(views), test::sphereSensor());
+    Random random(5);
+    for (float& outlier : judged.views.front().outlier)
+      outlier = static_cast<float>(random.uniform(0.003, 0.9));
+  }
+  JudgedViews judged;
+};
+
+class EveryProjection : public testing::TestWithParam<int> {
+ protected:
+  static Projection projection() {
+    const Pinhole plain = test::cameraFor(64, 0.5, 2.0);
+    if (GetParam() == 0) return plain;
+    Pinhole bent = plain;
+    bent.distortion[0] = -0.1;
+    return bent;
+  }
+};
+
+TEST_P(EveryProjection, LookingAtABlockIsLookingAtEachPoint) {
+  const OneView scene(projection());
+  const PreparedView view = prepare(scene.judged).front();
+  for (const std::size_t count : {512u, 511u, 3u, 1u}) {
+    const auto points = randomPoints(count, Eigen::Vector3d::Zero(), 1.2);
+    const BlockLook seen = look(view, PointBlock(points));
+    std::size_t in_sight = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto expected = view.projector(points[i]);
+      ASSERT_EQ(seen.pixel[i] >= 0, expected.has_value()) << i;
+      if (!expected) continue;
+      ++in_sight;
+      EXPECT_EQ(seen.pixel[i], expected->y * 64 + expected->x) << i;
+      EXPECT_NEAR(seen.depth[i], expected->depth, 1e-5) << i;
+    }
+    EXPECT_GE(in_sight, count / 10);
+  }
+}
+
+TEST_P(EveryProjection, FarFromTheOriginNothingIsLost) {
+  OneView scene(projection());
+  const Eigen::Vector3d shift(4e5, -5e6, 120);
+  scene.judged.views.front().world_from_camera.pretranslate(shift);
+  const PreparedView view = prepare(scene.judged).front();
+  const auto points = randomPoints(512, shift, 0.5);
+  const BlockLook seen = look(view, PointBlock(points));
+  for (std::size_t i = 0; i < 512; ++i) {
+    const auto expected = view.projector(points[i]);
+    ASSERT_EQ(seen.pixel[i] >= 0, expected.has_value()) << i;
+    if (!expected) continue;
+    EXPECT_NEAR(seen.depth[i], expected->depth, 2e-5) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(BlockKernels, EveryProjection, testing::Values(0, 1));
+
+TEST(BlockKernels, TheTestimonyOfABlockIsTheExactRatioOfEachPoint) {
+  for (const NoiseShape& shape : {gaussianNoise(), logisticNoise(), laplaceNoise()}) {
+    OneView scene;
+    scene.judged.sensor.shape = shape;
+    const PreparedView view = prepare(scene.judged).front();
+    const LikelihoodRatio ratio(scene.judged.sensor);
+    const auto points = randomPoints(500, Eigen::Vector3d::Zero(), 0.55);
+    const BlockLook seen = look(view, PointBlock(points));
+    const BlockTestimony said = testify(view, ratio, seen, points.size());
+    std::size_t measured = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float depth = seen.pixel[i] < 0 ? 0 : view.view->depth.data()[seen.pixel[i]];
+      ASSERT_EQ(said.measured[i], depth == kInvalidDepth ? 0.0f : 1.0f);
+      if (depth == kInvalidDepth) continue;
+      ++measured;
+      const Measurement m(depth, view.noise.at(depth), view.view->outlier.data()[seen.pixel[i]]);
+      EXPECT_NEAR(said.log_ratio[i], logLikelihoodRatio(scene.judged.sensor, m, seen.depth[i]), 2e-3) << i;
+    }
+    EXPECT_GT(measured, 200u);
+  }
+}
+
+TEST(BlockKernels, AnAlternativeDepthIsHeard) {
+  OneView scene;
+  JudgedView& judged = scene.judged.views.front();
+  judged.outlier = Image<float>(64, 64, 0.01f);
+  judged.alternatives.push_back({Image<float>(64, 64, 2.4f), Image<float>(64, 64, 0.4f)});
+  const PreparedView view = prepare(scene.judged).front();
+  const LikelihoodRatio ratio(scene.judged.sensor);
+  const auto points = randomPoints(300, Eigen::Vector3d::Zero(), 0.4);
+  const BlockLook seen = look(view, PointBlock(points));
+  const BlockTestimony said = testify(view, ratio, seen, points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (said.measured[i] == 0) continue;
+    const float depth = view.view->depth.data()[seen.pixel[i]];
+    Measurement m(depth, view.noise.at(depth), 0.01);
+    m.hypotheses[0].share = 0.6;
+    m.hypotheses[1] = {2.4f, view.noise.at(2.4f), 0.4};
+    m.count = 2;
+    EXPECT_NEAR(said.log_ratio[i], logLikelihoodRatio(scene.judged.sensor, m, seen.depth[i]), 2e-3) << i;
+  }
+}
+
+TEST(BlockKernels, AccumulatingIsAddingEachAndTakingAwayIsTheReverse) {
+  const VisibilityIntegral integral(0.5, 0.0, 30);
+  BlockTestimony said;
+  Random random(2);
+  for (std::size_t i = 0; i < 512; ++i) {
+    said.log_ratio[i] = static_cast<float>(random.uniform(-8, 8));
+    said.measured[i] = i % 3 == 0 ? 0.0f : 1.0f;
+  }
+  const std::size_t nodes = static_cast<std::size_t>(integral.nodeCount());
+  std::vector<float> sums(512 * nodes, 0.0f), expected(512 * nodes, 0.0f);
+  accumulate(integral, said, 0.7f, 512, sums.data());
+  for (std::size_t i = 0; i < 512; ++i)
+    if (said.measured[i] != 0) integral.add(said.log_ratio[i], 0.7f, &expected[i * nodes]);
+  for (std::size_t k = 0; k < sums.size(); ++k) ASSERT_NEAR(sums[k], expected[k], 1e-5);
+  accumulate(integral, said, -0.7f, 512, sums.data());
+  for (const float left : sums) ASSERT_NEAR(left, 0.0f, 1e-6f);
+}
+
+}  // namespace
+}  // namespace vdbfuse
