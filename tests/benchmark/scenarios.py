@@ -23,6 +23,7 @@ import hashlib
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -57,6 +58,8 @@ class Tool:
                                   timeout=TIME_LIMIT)
         except subprocess.TimeoutExpired:
             raise Failed(f"{arguments[0]} took more than {TIME_LIMIT} s") from None
+        if done.returncode in (130, -signal.SIGINT, -signal.SIGTERM):
+            raise KeyboardInterrupt  # says nothing of the tool: no result is written
         if done.returncode != 0:
             last = (done.stderr.strip().splitlines() or ["nothing said"])[-1]
             raise Failed(f"{arguments[0]} ended with {done.returncode}: {last}")
@@ -74,8 +77,7 @@ def write_atomically(path, text):
 
 
 def make_scan(tool, scenario, size, meshes, folder):
-    known = scenario.scene == "figure"
-    scene = "figure" if known else meshes / f"{scenario.scene}.ply"
+    scene = "figure" if scenario.scene == "figure" else meshes / f"{scenario.scene}.ply"
     tool.work("synth", scene, folder, "--views", scenario.views, "--arc", scenario.arc, "--size", size.pixels,
               "--background", scenario.background, "--up", UP[scenario.scene], "--oracle", "--quiet",
               *DATA[scenario.data])
@@ -256,6 +258,14 @@ def refuse_other_size(out, size):
     write_atomically(settings, json.dumps({"size": size}) + "\n")
 
 
+def run_all(matrix, todo, arguments):
+    pool = ThreadPoolExecutor(max_workers=max(1, arguments.jobs))
+    try:
+        list(pool.map(lambda s: matrix.run_scenario(s, arguments.rows), todo))
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
 def main():
     arguments = parse_arguments()
     if arguments.check:
@@ -273,8 +283,7 @@ def main():
         print(f"no {', '.join(sorted(absent))} in {arguments.meshes}: their scenarios stay empty")
     todo = [s for s in chosen if fnmatch.fnmatch(s.name, arguments.only) and s.scene not in absent]
     if not arguments.report:
-        with ThreadPoolExecutor(max_workers=max(1, arguments.jobs)) as pool:
-            list(pool.map(lambda s: matrix.run_scenario(s, arguments.rows), todo))
+        run_all(matrix, todo, arguments)
     matrix.report(chosen)
     return 0
 
@@ -284,3 +293,5 @@ if __name__ == "__main__":
         sys.exit(main())
     except (Failed, OSError) as failure:
         sys.exit(f"scenarios.py: {failure}")
+    except KeyboardInterrupt:
+        sys.exit(130)
