@@ -100,6 +100,9 @@ std::vector<std::string> validate(const EvaluateOptions& options) {
     if (!(tau > 0) || !std::isfinite(tau))
       problems.push_back("taus must be positive, found " + std::to_string(tau));
   }
+  if (options.deep && (!(*options.deep >= 0) || !std::isfinite(*options.deep))) {
+    problems.push_back("deep must not be negative, found " + std::to_string(*options.deep));
+  }
   if (options.samples == 0) problems.push_back("samples must be positive");
   if (options.region_samples == 0) problems.push_back("region_samples must be positive");
   if (options.iou_resolution < 1 || options.iou_resolution > 2048) {
@@ -132,7 +135,11 @@ Evaluation evaluate(const TriangleMesh& mesh, const TriangleMesh& truth, const E
       truth_inside(truth, accuracyFor(truth_closed));
   const Solid solid_mesh{mesh_inside, mesh_surface, mesh_box, mesh_closed};
   const Solid solid_truth{truth_inside, truth_surface, truth_box, truth_closed};
-  result.iou = intersectionOverUnion(solid_mesh, solid_truth, {options.iou_resolution, options.seed});
+  const OverlapOptions overlap_options{options.iou_resolution, options.seed, options.deep};
+  const Overlap volumes = overlap(solid_mesh, solid_truth, overlap_options);
+  result.iou = volumes.iou;
+  result.false_outside_deep = volumes.false_outside_deep;
+  result.false_inside_deep = volumes.false_inside_deep;
   for (const Region& region : regions) {
     result.regions.push_back(shareOf(region, mesh_inside, truth_inside, options));
   }

@@ -18,11 +18,21 @@ using Eigen::Vector3d;
 // further.
 constexpr int kLargeBlock = 16, kSmallBlock = 2;
 
+// Cells by what they are; `lost` and `invented` only where the mesh is wrong deeper than asked for.
 struct Counts {
-  std::size_t both = 0, any = 0;
+  std::size_t both = 0, any = 0, truth = 0, lost = 0, invented = 0;
+  Counts& operator+=(const Counts& other) {
+    both += other.both;
+    any += other.any;
+    truth += other.truth;
+    lost += other.lost;
+    invented += other.invented;
+    return *this;
+  }
 };
 
 enum class Place { Unknown, Inside, Outside };
+enum class Depth { Unknown, Shallow, Deep };
 
 struct Grid {
   Box box;
@@ -63,8 +73,13 @@ class OverlapCounter {
  public:
   /// Nothing is counted in `excluded`.
   OverlapCounter(const Solid& mesh, const Solid& truth, const Grid& grid, const Box& excluded,
-                 std::uint64_t seed)
-      : mesh_(mesh), truth_(truth), grid_(grid), excluded_(excluded), seed_(seed) {}
+                 const OverlapOptions& options)
+      : mesh_(mesh),
+        truth_(truth),
+        grid_(grid),
+        excluded_(excluded),
+        seed_(options.seed),
+        deep_(options.deep) {}
 
   Counts count() const {
     std::vector<Block> blocks;
@@ -81,10 +96,7 @@ class OverlapCounter {
       visit(blocks[i], Place::Unknown, Place::Unknown, parts[i]);
     });
     Counts total;
-    for (const Counts& part : parts) {
-      total.both += part.both;
-      total.any += part.any;
-    }
+    for (const Counts& part : parts) total += part;
     return total;
   }
 
@@ -95,8 +107,9 @@ class OverlapCounter {
     in_mesh = decide(mesh_, in_mesh, box);
     in_truth = decide(truth_, in_truth, box);
     const bool decided = in_mesh != Place::Unknown && in_truth != Place::Unknown;
-    if (decided && !excluded_.intersects(box)) {
-      add(in_mesh, in_truth, block.cells(), counts);
+    const Depth depth = decided ? depthOf(box, in_mesh, in_truth) : Depth::Unknown;
+    if (depth != Depth::Unknown && !excluded_.intersects(box)) {
+      add({in_mesh, in_truth, depth}, block.cells(), counts);
     } else if ((block.high - block.low).maxCoeff() > kSmallBlock) {
       visitParts(block, in_mesh, in_truth, counts);
     } else {
@@ -117,9 +130,28 @@ class OverlapCounter {
     return winding > 1 - margin ? Place::Inside : Place::Unknown;
   }
 
-  static void add(Place in_mesh, Place in_truth, std::size_t cells, Counts& counts) {
-    if (in_mesh == Place::Inside && in_truth == Place::Inside) counts.both += cells;
-    if (in_mesh == Place::Inside || in_truth == Place::Inside) counts.any += cells;
+  // The distance to the surface changes by no more than the way to the centre.
+  Depth depthOf(const Box& box, Place in_mesh, Place in_truth) const {
+    if (!deep_ || in_mesh == in_truth) return Depth::Shallow;
+    const double radius = 0.5 * box.diagonal().norm();
+    const double distance = truth_.surface.query(box.center()).distance;
+    if (distance - radius > *deep_) return Depth::Deep;
+    return distance + radius <= *deep_ ? Depth::Shallow : Depth::Unknown;
+  }
+
+  struct Kind {
+    Place in_mesh, in_truth;
+    Depth depth;
+  };
+
+  static void add(const Kind& kind, std::size_t cells, Counts& counts) {
+    const bool mesh = kind.in_mesh == Place::Inside, truth = kind.in_truth == Place::Inside;
+    if (mesh && truth) counts.both += cells;
+    if (mesh || truth) counts.any += cells;
+    if (truth) counts.truth += cells;
+    if (kind.depth != Depth::Deep) return;
+    if (truth && !mesh) counts.lost += cells;
+    if (mesh && !truth) counts.invented += cells;
   }
 
   void visitParts(const Block& block, Place in_mesh, Place in_truth, Counts& counts) const {
@@ -131,16 +163,24 @@ class OverlapCounter {
     }
   }
 
+  static Place placeOf(const Solid& solid, Place known, const Vector3d& p) {
+    if (known != Place::Unknown) return known;
+    return solid.box.contains(p) && solid.winding.inside(p) ? Place::Inside : Place::Outside;
+  }
+
+  Kind kindOf(const Vector3d& p, Place in_mesh, Place in_truth) const {
+    in_mesh = placeOf(mesh_, in_mesh, p);
+    in_truth = placeOf(truth_, in_truth, p);
+    const bool deep = deep_ && in_mesh != in_truth && truth_.surface.query(p).distance > *deep_;
+    return {in_mesh, in_truth, deep ? Depth::Deep : Depth::Shallow};
+  }
+
   void visitCells(const Block& block, Place in_mesh, Place in_truth, Counts& counts) const {
-    const auto at = [](const Solid& solid, Place known, const Vector3d& p) {
-      if (known != Place::Unknown) return known;
-      return solid.box.contains(p) && solid.winding.inside(p) ? Place::Inside : Place::Outside;
-    };
     for (int z = block.low.z(); z < block.high.z(); ++z) {
       for (int y = block.low.y(); y < block.high.y(); ++y) {
         for (int x = block.low.x(); x < block.high.x(); ++x) {
           const Vector3d p = grid_.randomPoint({x, y, z}, seed_);
-          if (!excluded_.contains(p)) add(at(mesh_, in_mesh, p), at(truth_, in_truth, p), 1, counts);
+          if (!excluded_.contains(p)) add(kindOf(p, in_mesh, in_truth), 1, counts);
         }
       }
     }
@@ -151,6 +191,7 @@ class OverlapCounter {
   const Grid& grid_;
   const Box& excluded_;
   std::uint64_t seed_;
+  std::optional<double> deep_;
 };
 
 }  // namespace
@@ -164,15 +205,23 @@ Box finiteBox(const TriangleMesh& mesh) {
   return box;
 }
 
-std::optional<double> intersectionOverUnion(const Solid& mesh, const Solid& truth,
-                                            const OverlapOptions& options) {
+Overlap overlap(const Solid& mesh, const Solid& truth, const OverlapOptions& options) {
+  OverlapOptions outer = options;
+  ++outer.seed;
   const Grid near(truth.box, options.resolution), far(truth.box.merged(mesh.box), options.resolution);
-  const Counts inside = OverlapCounter(mesh, truth, near, Box(), options.seed).count();
-  const Counts around = OverlapCounter(mesh, truth, far, truth.box, options.seed + 1).count();
-  const double near_cell = near.cell.prod(), far_cell = far.cell.prod();
-  const double any = static_cast<double>(inside.any) * near_cell + static_cast<double>(around.any) * far_cell;
-  if (!(any > 0)) return std::nullopt;
-  return static_cast<double>(inside.both) * near_cell / any;
+  const Counts inside = OverlapCounter(mesh, truth, near, Box(), options).count();
+  const Counts around = OverlapCounter(mesh, truth, far, truth.box, outer).count();
+  const auto volume = [&](std::size_t Counts::*cells) {
+    return static_cast<double>(inside.*cells) * near.cell.prod() +
+           static_cast<double>(around.*cells) * far.cell.prod();
+  };
+  const double any = volume(&Counts::any), true_volume = volume(&Counts::truth);
+  Overlap result;
+  if (any > 0) result.iou = volume(&Counts::both) / any;
+  if (!options.deep || !(true_volume > 0)) return result;
+  result.false_outside_deep = volume(&Counts::lost) / true_volume;
+  result.false_inside_deep = volume(&Counts::invented) / true_volume;
+  return result;
 }
 
 }  // namespace vdbfuse

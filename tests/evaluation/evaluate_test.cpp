@@ -125,16 +125,69 @@ TEST(Evaluate, RegionsAreSharesOfWhereTheTruthIsAsExpected) {
   EXPECT_EQ(e.regions[3].share, std::nullopt);
 }
 
+EvaluateOptions deeperThan(double deep) {
+  EvaluateOptions options = quick({0.1});
+  options.samples = 1000;
+  options.deep = deep;
+  return options;
+}
+
+TEST(Evaluate, DeepVolumesCountWhatIsFurtherFromTheTrueSurface) {
+  const TriangleMesh truth = test::sphere(1.0, 5);
+  const Evaluation small = evaluate(test::sphere(0.7, 5), truth, deeperThan(0.1));
+  EXPECT_NEAR(*small.false_outside_deep, std::pow(0.9, 3) - std::pow(0.7, 3), 0.004);
+  EXPECT_EQ(small.false_inside_deep, 0.0);
+  const Evaluation large = evaluate(test::sphere(1.5, 5), truth, deeperThan(0.1));
+  EXPECT_NEAR(*large.false_inside_deep, std::pow(1.5, 3) - std::pow(1.1, 3), 0.03);
+  EXPECT_EQ(large.false_outside_deep, 0.0);
+  const Evaluation near = evaluate(test::sphere(0.95, 5), truth, deeperThan(0.1));
+  EXPECT_EQ(near.false_outside_deep, 0.0);
+}
+
+TEST(Evaluate, OfABiteOutOfASphereOnlyThePartDeepEnoughCounts) {
+  const TriangleMesh truth = test::sphere(1.0, 5);
+  const double distance = 0.4, radius = 0.3, deep = 0.6, core = 1 - deep;
+  const TriangleMesh bubble = test::inverted(test::sphere(radius, 4, {distance, 0, 0}));
+  const TriangleMesh bitten = test::joined(truth, bubble);
+  const double whole = std::pow(radius, 3);
+  EXPECT_NEAR(*evaluate(bitten, truth, deeperThan(0.2)).false_outside_deep, whole, 0.001);
+  // Of two balls, what they share (the lens), as a share of the unit ball.
+  const double d = distance, sum = radius + core, difference = radius - core;
+  const double lens = std::pow(sum - d, 2) * (d * d + 2 * d * sum - 3 * difference * difference) / (16 * d);
+  EXPECT_LT(lens, 0.5 * whole);
+  EXPECT_NEAR(*evaluate(bitten, truth, deeperThan(deep)).false_outside_deep, lens, 0.001);
+}
+
+TEST(Evaluate, AThingInventedFarAwayIsDeepWholly) {
+  const TriangleMesh truth = test::sphere(1.0, 4);
+  const TriangleMesh mesh = test::joined(truth, test::sphere(0.5, 4, {4, 0, 0}));
+  EXPECT_NEAR(*evaluate(mesh, truth, deeperThan(0.2)).false_inside_deep, 0.125, 0.004);
+}
+
+TEST(Evaluate, DeepVolumesAreGivenOnlyWhenAskedForAndDoNotChangeTheIou) {
+  const TriangleMesh truth = test::sphere(1.0, 4), mesh = test::sphere(1.2, 4, {0.3, 0, 0});
+  EvaluateOptions options = deeperThan(0.05);
+  const Evaluation with = evaluate(mesh, truth, options);
+  options.deep.reset();
+  const Evaluation without = evaluate(mesh, truth, options);
+  EXPECT_TRUE(with.false_outside_deep && with.false_inside_deep);
+  EXPECT_FALSE(without.false_outside_deep || without.false_inside_deep);
+  EXPECT_EQ(with.iou, without.iou);
+}
+
 TEST(Evaluate, OneThreadFindsTheSameToTheLastBit) {
   const TriangleMesh mesh = test::torus(1.0, 0.31), truth = test::torus();
   const std::vector<Region> regions = {{"half", Expectation::Inside, RegionSphere{{1, 0, 0}, 0.3}}};
-  const Evaluation many = evaluate(mesh, truth, quick({0.01}), regions);
+  EvaluateOptions options = quick({0.01});
+  options.deep = 0.001;
+  const Evaluation many = evaluate(mesh, truth, options, regions);
   const ThreadLimit limit(1);
-  const Evaluation one = evaluate(mesh, truth, quick({0.01}), regions);
+  const Evaluation one = evaluate(mesh, truth, options, regions);
   EXPECT_EQ(one.accuracy90, many.accuracy90);
   EXPECT_EQ(one.accuracy_rms, many.accuracy_rms);
   EXPECT_EQ(one.scores[0].fscore, many.scores[0].fscore);
   EXPECT_EQ(one.iou, many.iou);
+  EXPECT_EQ(one.false_inside_deep, many.false_inside_deep);
   EXPECT_EQ(one.regions[0].share, many.regions[0].share);
 }
 
@@ -144,11 +197,12 @@ TEST(Evaluate, AllThatIsWrongWithTheOptionsIsSaidAtOnce) {
   options.samples = 0;
   options.region_samples = 0;
   options.iou_resolution = 0;
-  EXPECT_EQ(validate(options).size(), 4u);
+  options.deep = -0.5;
+  EXPECT_EQ(validate(options).size(), 5u);
   EXPECT_EQ(
       messageOf<InvalidArgument>([&] { evaluate({}, test::octahedron(), options); }),
-      "options: taus must be positive, found -1.000000; samples must be positive; region_samples must be "
-      "positive; iou_resolution must be in 1 … 2048, found 0");
+      "options: taus must be positive, found -1.000000; deep must not be negative, found -0.500000; samples "
+      "must be positive; region_samples must be positive; iou_resolution must be in 1 … 2048, found 0");
 }
 
 TEST(Evaluate, ATruthWithoutAreaIsRefused) {

@@ -36,7 +36,7 @@ void expectSameAsBruteForce(const TriangleMesh& mesh, const TriangleMesh& truth,
   const Solid a{mesh_winding, mesh_surface, finiteBox(mesh), isClosedManifold(topology(mesh))};
   const Solid b{truth_winding, truth_surface, finiteBox(truth), isClosedManifold(topology(truth))};
   const double expected = bruteForce(mesh_winding, truth_winding, a.box.merged(b.box), brute.resolution);
-  EXPECT_NEAR(*intersectionOverUnion(a, b, {64, 1}), expected, 0.006);
+  EXPECT_NEAR(*overlap(a, b, {64, 1}).iou, expected, 0.006);
 }
 
 TEST(Overlap, BlocksDecideAsSinglePointsDoForClosedMeshes) {

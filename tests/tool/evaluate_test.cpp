@@ -48,6 +48,21 @@ TEST_F(EvaluateTool, WritesTheFrozenKeys) {
   EXPECT_EQ(json.at("regions").at("core"), 1.0);
 }
 
+TEST_F(EvaluateTool, SaysWhatVolumeIsWrongDeeperThanAsked) {
+  const ToolResult result = runTool(folder, "evaluate mesh.stl truth.ply --deep 0.02 --json out.json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("deep          0.000 % of the true volume lost, "));
+  const auto json = nlohmann::json::parse(test::readText(folder / "out.json"));
+  EXPECT_EQ(json.at("options").at("deep"), 0.02);
+  EXPECT_EQ(json.at("false_outside_volume_deep"), 0.0);
+  EXPECT_NEAR(json.at("false_inside_volume_deep").get<double>(), 1.05 * 1.05 * 1.05 - 1.02 * 1.02 * 1.02,
+              0.005);
+  EXPECT_EQ(runTool(folder, "evaluate mesh.stl truth.ply --deep -1").exit_code, 2);
+  ASSERT_EQ(runTool(folder, "evaluate mesh.stl truth.ply --json out.json").exit_code, 0);
+  EXPECT_FALSE(
+      nlohmann::json::parse(test::readText(folder / "out.json")).contains("false_inside_volume_deep"));
+}
+
 TEST_F(EvaluateTool, SaysWhatIsWrongInOneLineAndExitsWithOne) {
   const ToolResult missing = runTool(folder, "evaluate none.ply truth.ply");
   EXPECT_EQ(missing.exit_code, 1);

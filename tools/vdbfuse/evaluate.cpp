@@ -47,6 +47,7 @@ ordered_json toJson(const Arguments& arguments, const Evaluation& e) {
     fscore.push_back(score.fscore);
   }
   object["options"] = {{"mesh", arguments.mesh}, {"truth", arguments.truth}, {"tau", taus}};
+  if (arguments.options.deep) object["options"]["deep"] = *arguments.options.deep;
   if (!arguments.regions.empty()) object["options"]["regions"] = arguments.regions;
   object["accuracy90"] = finiteOrNull(e.accuracy90);
   object["accuracy_rms"] = finiteOrNull(e.accuracy_rms);
@@ -56,6 +57,10 @@ ordered_json toJson(const Arguments& arguments, const Evaluation& e) {
   object["recall"] = recall;
   object["fscore"] = fscore;
   object["iou"] = orNull(e.iou);
+  if (arguments.options.deep) {
+    object["false_outside_volume_deep"] = orNull(e.false_outside_deep);
+    object["false_inside_volume_deep"] = orNull(e.false_inside_deep);
+  }
   object["vertices"] = e.topology.used_vertices;
   object["triangles"] = e.topology.triangles;
   object["components"] = e.topology.components;
@@ -87,6 +92,10 @@ void print(const Evaluation& e) {
                 100 * s.fscore);
   }
   if (e.iou) std::printf("IoU           %.4f\n", *e.iou);
+  if (e.false_outside_deep && e.false_inside_deep) {
+    std::printf("deep          %.3f %% of the true volume lost, %.3f %% invented\n",
+                100 * *e.false_outside_deep, 100 * *e.false_inside_deep);
+  }
   std::printf("mesh          %zu triangles, %zu components, %zu open edges, %zu non-manifold edges: %s\n",
               e.topology.triangles, e.topology.components, e.topology.open_edges,
               e.topology.nonmanifold_edges,
@@ -134,6 +143,10 @@ void addEvaluate(CLI::App& app, Action& action) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--deep", arguments->options.deep,
+                   "Also the volume lost and invented further than this from the true surface")
+      ->check(CLI::NonNegativeNumber);
   command->add_option(
       "--regions", arguments->regions,
       "JSON file of named regions known to be outside or inside: prints the share kept or open");

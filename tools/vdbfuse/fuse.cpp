@@ -41,7 +41,7 @@ struct Request {
   std::string border = "auto", outliers = "auto", noise = "gaussian", sensor, thickness = "off";
   std::size_t views = 0;
   int threads = 0;
-  bool no_reliability = false, overwrite = false, quiet = false;
+  bool no_reliability = false, no_denial = false, overwrite = false, quiet = false;
 };
 
 template <class T>
@@ -90,6 +90,7 @@ void addSensorOptions(CLI::App& app, Request& r) {
                  "Share of wrong depths, the same for every pixel; auto: judged by pixel")
       ->capture_default_str();
   app.add_flag("--no-reliability", r.no_reliability, "Believe every pixel (as --outliers 0.01)");
+  app.add_flag("--no-denial", r.no_denial, "Judge pixels without the second pass, leave-one-out denial");
   choice(app, "--no-return", r.reconstruct.judge.no_return, kNoReturns,
          "What a missing depth around an object means");
 }
@@ -172,6 +173,7 @@ void resolve(Request& r) {
   }
   constexpr double kBelieveAll = 0.01;
   if (r.no_reliability) o.outliers = kBelieveAll;
+  if (r.no_denial) o.judge.denial = JudgeOptions::Denial::Skip;
   if (r.outliers != "auto") o.outliers = parseShare(r.outliers);
   o.noise_shape = noiseShape(r.noise);
   if (!r.sensor.empty()) o.noise = sensorPreset(r.sensor).noise;

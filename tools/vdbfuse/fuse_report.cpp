@@ -56,6 +56,7 @@ Json optionsJson(const Reconstruction& result, const ReconstructOptions& o) {
             {"bbox", json(result.grid.domain)},
             {"noise", o.noise_shape.name},
             {"outliers", o.outliers ? Json(*o.outliers) : Json("auto")},
+            {"denial", o.judge.denial == JudgeOptions::Denial::Examine ? "examine" : "skip"},
             {"rule", nameOf(o.evidence.rule)},
             {"visibility_prior", o.evidence.visibility_prior},
             {"visibility", o.evidence.visibility},

@@ -21,6 +21,9 @@ struct EvaluateOptions {
   /// Points along the longest side of the truth's bounding box for the IoU, one a cell; twice as many cost
   /// eight times as much. With this default the IoU is good to about 0.001.
   int iou_resolution = 128;
+  /// When given, also the volume that is wrong and further than this from the true surface, in the unit of
+  /// the meshes, not negative: a limb lost or invented, and not a surface that is a little off.
+  std::optional<double> deep;
   /// Points a region: shares are good to 0.3 %.
   std::size_t region_samples = 20000;
   std::uint64_t seed = 1;
@@ -54,12 +57,15 @@ struct Evaluation {
   /// Volume of the intersection over volume of the union; inside is where the generalised winding number is
   /// above one half, so that open meshes have one, too. None when neither encloses anything.
   std::optional<double> iou;
+  /// Volumes deeper than `deep`, as shares of the true volume: inside in truth and outside of the mesh, and
+  /// the other way round. None when not asked for, or when the truth encloses nothing.
+  std::optional<double> false_outside_deep, false_inside_deep;
   TopologyReport topology;           ///< of the mesh
   std::vector<RegionShare> regions;  ///< in the order given
 };
 
 /// Compares `mesh` with `truth`, both in the same coordinates and unit. Distances are exact (ClosestPoint) at
-/// seeded samples uniform by area; the IoU is an integral over one random point in each cell of a grid. The
+/// seeded samples uniform by area; volumes are integrals over one random point in each cell of a grid. The
 /// same result for every number of threads. InvalidArgument when the options are wrong, the truth has no
 /// area, or an index is out of range.
 Evaluation evaluate(const TriangleMesh& mesh, const TriangleMesh& truth, const EvaluateOptions& options = {},
