@@ -14,6 +14,10 @@ namespace vdbfuse {
 namespace {
 
 constexpr double kMinMissRate = 0.2;
+// The first view's worth of masks counts no more than a no-return at its best (L = 3): against two views or
+// more that deny a point that is not enough, so that one wrong mask, or any number of copies of it, cannot
+// carve alone.
+constexpr float kUnconfirmedMasks = 1.0f, kUnconfirmedMask = 1.0986123f;
 // Points that one thread works on at a time: their sums stay in the cache.
 constexpr std::size_t kBlock = 512;
 constexpr std::size_t kCellsPerTask = 1024;
@@ -34,7 +38,8 @@ class Combiner {
         ratio_(judged.sensor),
         integral_(options.visibility_prior, options.rule == EvidenceRule::Outside ? options.visibility : 1.0,
                   totalWeight(judged)),
-        no_return_(static_cast<float>(logNoReturnRatio(judged.miss_rate))) {}
+        no_return_(static_cast<float>(logNoReturnRatio(judged.miss_rate))),
+        mask_(static_cast<float>(logMaskRatio(options.mask_error))) {}
 
   // out[i] = evidence at points[i]; at most kBlock points.
   void combine(std::span<const Eigen::Vector3d> points, float* out) const {
@@ -48,10 +53,29 @@ class Combiner {
   }
 
  private:
+  // Weights that rays which met nothing may still throw in at a point.
+  struct Free {
+    float no_returns, unconfirmed_masks = kUnconfirmedMasks;
+  };
+
+  void addNoReturn(float weight, Free& left, float* sums) const {
+    if (left.no_returns <= 0) return;
+    integral_.add(no_return_, std::min(weight, left.no_returns), sums);
+    left.no_returns -= weight;
+  }
+
+  // Only the sum of the weights matters, not the order of the views.
+  void addMask(float weight, Free& left, float* sums) const {
+    const float unconfirmed = std::min(weight, left.unconfirmed_masks);
+    integral_.add(std::min(mask_, kUnconfirmedMask), unconfirmed, sums);
+    if (weight > unconfirmed) integral_.add(mask_, weight - unconfirmed, sums);
+    left.unconfirmed_masks -= unconfirmed;
+  }
+
   void combineOutside(std::span<const Eigen::Vector3d> points, float* out) const {
     const std::size_t nodes = static_cast<std::size_t>(integral_.nodeCount());
     std::vector<float> sums(points.size() * nodes, 0.0f), reports(points.size(), 0.0f);
-    std::vector<float> no_returns_left(points.size(), static_cast<float>(options_.max_no_returns));
+    std::vector<Free> free(points.size(), {static_cast<float>(options_.max_no_returns)});
     for (const PreparedView& prepared : views_) {
       const JudgedView& view = *prepared.view;
       const float weight = static_cast<float>(view.weight);
@@ -59,12 +83,14 @@ class Combiner {
         const std::optional<Sighting> seen = prepared.projector(points[i]);
         if (!seen) continue;
         const float measured = view.depth(seen->x, seen->y);
-        if (measured != kInvalidDepth) {
+        const Look look = view.look(seen->x, seen->y);
+        if (look == Look::Outside) {
+          addMask(weight, free[i], &sums[i * nodes]);
+        } else if (measured != kInvalidDepth) {
           integral_.add(logRatio(prepared, *seen, measured), weight, &sums[i * nodes]);
           reports[i] += weight;
-        } else if (view.no_return(seen->x, seen->y) && no_returns_left[i] > 0) {
-          integral_.add(no_return_, std::min(weight, no_returns_left[i]), &sums[i * nodes]);
-          no_returns_left[i] -= weight;
+        } else if (look == Look::Empty) {
+          addNoReturn(weight, free[i], &sums[i * nodes]);
         }
       }
     }
@@ -82,10 +108,11 @@ class Combiner {
         const std::optional<Sighting> seen = prepared.projector(points[i]);
         if (!seen) continue;
         const float measured = prepared.view->depth(seen->x, seen->y);
-        if (measured == kInvalidDepth) continue;
+        const bool masked = prepared.view->look(seen->x, seen->y) == Look::Outside;
+        if (measured == kInvalidDepth && !masked) continue;
         const double t =
             std::clamp((seen->depth - sensor_.near) / (sensor_.far - sensor_.near), 0.001, 0.999);
-        const double odds = std::log((1 - t) / t) + logRatio(prepared, *seen, measured);
+        const double odds = std::log((1 - t) / t) + (masked ? mask_ : logRatio(prepared, *seen, measured));
         log_hidden[i] -= odds > 30 ? odds : std::log1p(std::exp(odds));
         reported[i] = true;
       }
@@ -111,7 +138,7 @@ class Combiner {
   std::vector<PreparedView> views_;
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
-  float no_return_;
+  float no_return_, mask_;
 };
 
 // Samples a side of a cell: one in the middle of a finest cell.
@@ -168,6 +195,8 @@ std::vector<std::string> validate(const EvidenceOptions& options) {
   if (!std::isfinite(options.prior)) problems.emplace_back("prior must be finite");
   if (!(options.balloon >= 0)) problems.emplace_back("balloon must not be negative");
   if (options.max_no_returns < 0) problems.emplace_back("max_no_returns must not be negative");
+  if (!(options.mask_error > 0 && options.mask_error < 0.5))
+    problems.emplace_back("mask_error must lie in (0, 0.5)");
   return problems;
 }
 
@@ -185,6 +214,11 @@ double logNoReturnRatio(double miss_rate) {
   constexpr double kSeenPast = 0.5;
   const double m = std::clamp(miss_rate, kMinMissRate, 1.0);
   return std::log((kSeenPast + (1 - kSeenPast) * m) / m);
+}
+
+double logMaskRatio(double mask_error) {
+  constexpr double kPastEverything = 0.5;
+  return std::log((kPastEverything * (1 - mask_error) + (1 - kPastEverything) * mask_error) / mask_error);
 }
 
 std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points,
