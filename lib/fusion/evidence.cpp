@@ -31,8 +31,8 @@ class Combiner {
   void combine(std::span<const Eigen::Vector3d> points, float* out) const {
     const PointBlock block(points);
     std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()),
-        empties(points.size());
-    const TestimonySums sums{nodes, reports, empties};
+        empties(points.size()), masked(points.size());
+    const TestimonySums sums{nodes, reports, empties, masked};
     for (const PreparedView& view : views_)
       sum_.add(view, block, static_cast<float>(view.view->weight), sums);
     sum_.finish(sums, out);
@@ -97,6 +97,8 @@ std::vector<std::string> validate(const EvidenceOptions& options) {
   if (!std::isfinite(options.prior)) problems.emplace_back("prior must be finite");
   if (!(options.balloon >= 0)) problems.emplace_back("balloon must not be negative");
   if (options.max_no_returns < 0) problems.emplace_back("max_no_returns must not be negative");
+  if (!(options.mask_error > 0 && options.mask_error < 0.5))
+    problems.emplace_back("mask_error must lie in (0, 0.5)");
   return problems;
 }
 
@@ -104,6 +106,11 @@ double logNoReturnRatio(double miss_rate) {
   constexpr double kSeenPast = 0.5;
   const double m = std::clamp(miss_rate, kMinMissRate, 1.0);
   return std::log((kSeenPast + (1 - kSeenPast) * m) / m);
+}
+
+double logMaskRatio(double mask_error) {
+  constexpr double kPastEverything = 0.5;
+  return std::log((kPastEverything * (1 - mask_error) + (1 - kPastEverything) * mask_error) / mask_error);
 }
 
 std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points,

@@ -71,6 +71,7 @@ class Hearing {
     const std::optional<Sighting> seen = projectors_[k](point);
     if (!seen) return Answer::Nothing;
     const View& other = views_[neighbours_[k]];
+    if (isOutsideMask(other.map, seen->x, seen->y)) return Answer::SeesPast;
     const float measured = other.map.depth(seen->x, seen->y);
     if (measured == kInvalidDepth) return Answer::Missed;
     const double reach = kAgreeSigmas * std::hypot(noise, lookupNoise(sensor_, other.projection, measured));

@@ -51,21 +51,36 @@ ReliabilityTable learn(const Testimonies& testimonies, const std::vector<Image<s
 }
 
 // Empty space around an object shows as a no-return along most of the border of most images; a room does not.
-bool trustNoReturn(const std::vector<JudgedView>& views, JudgeOptions::NoReturn rule) {
+bool trustNoReturn(const std::vector<Image<std::uint8_t>>& empty, JudgeOptions::NoReturn rule) {
   constexpr double kMostOfTheBorder = 0.5;
   if (rule != JudgeOptions::NoReturn::Auto) return rule == JudgeOptions::NoReturn::Free;
   std::vector<double> shares;
-  for (const JudgedView& view : views) shares.push_back(borderShare(view.no_return));
+  for (const Image<std::uint8_t>& view : empty) shares.push_back(borderShare(view));
   const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
   std::nth_element(shares.begin(), middle, shares.end());
   return *middle > kMostOfTheBorder;
 }
 
-void setNoReturns(std::vector<JudgedView>& views, JudgeOptions::NoReturn rule) {
-  parallelFor(views.size(), 1,
-              [&](std::size_t i, std::size_t) { views[i].no_return = emptyRegions(views[i].depth); });
-  if (trustNoReturn(views, rule)) return;
-  for (JudgedView& view : views) std::fill(view.no_return.begin(), view.no_return.end(), std::uint8_t{0});
+// A view with a mask needs no guess: what is missing inside its silhouette is a hole in the measurements.
+void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoReturn rule,
+                  std::vector<JudgedView>& views) {
+  if (unmasked.empty()) return;
+  std::vector<Image<std::uint8_t>> empty(unmasked.size());
+  parallelFor(unmasked.size(), 1,
+              [&](std::size_t k, std::size_t) { empty[k] = emptyRegions(views[unmasked[k]].depth); });
+  if (!trustNoReturn(empty, rule)) return;
+  for (std::size_t k = 0; k < unmasked.size(); ++k) {
+    std::transform(empty[k].begin(), empty[k].end(), views[unmasked[k]].look.begin(),
+                   [](std::uint8_t is_empty) { return is_empty ? Look::Empty : Look::Nothing; });
+  }
+}
+
+std::vector<std::size_t> viewsWithoutMask(const std::vector<View>& views) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].map.mask.empty()) found.push_back(i);
+  }
+  return found;
 }
 
 }  // namespace
@@ -84,12 +99,15 @@ ConfidenceDirection confidenceDirection(const ReliabilityModel& model) {
 Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
                 const JudgeOptions& options, const Progress& progress) {
   const std::size_t count = views.size();
+  for (View& view : views) applyMask(view.map);
   std::vector<PixelSurface> surfaces = analyseAll(views, sensor.noise, progress);
   Testimonies testimonies =
       hearNeighbours(views, surfaces, sensor, chooseNeighbours(graph, count, options.neighbours), progress);
   const ConfidenceBins bins(views);
   const std::vector<Image<std::uint8_t>> confidence = bins.binAll(views);
   ReliabilityTable table = learn(testimonies, confidence, bins);
+
+  const std::vector<std::size_t> unmasked = viewsWithoutMask(views);
 
   Judgement result;
   JudgedViews& judged = result.judged = believe(std::move(views), sensor);
@@ -99,7 +117,7 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     judged.views[i].incidence = std::move(surfaces[i].incidence);
     judged.views[i].weight = weights[i];
   }
-  setNoReturns(judged.views, options.no_return);
+  setNoReturns(unmasked, options.no_return, judged.views);
   setOutliers(testimonies, confidence, table, judged.views);
   result.domain = options.domain ? *options.domain : supportedDomain(judged);
   widenRange(judged, result.domain);

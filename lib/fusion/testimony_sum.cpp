@@ -9,6 +9,11 @@
 namespace vdbfuse {
 namespace {
 
+// The first view's worth of masks counts no more than a no-return at its best (L = 3): against two views or
+// more that deny a point that is not enough, so that one wrong mask, or any number of copies of it, cannot
+// carve alone.
+constexpr float kUnconfirmedMasks = 1.0f, kUnconfirmedMask = 1.0986123f;
+
 // log(1 + e^x)
 float softplus(float x) { return x > 30 ? x : std::log1p(std::exp(x)); }
 
@@ -26,7 +31,7 @@ Measurement measurementAt(const PreparedView& prepared, std::size_t pixel) {
 TestimonySums TestimonySums::part(std::size_t first, std::size_t count) const {
   const std::size_t per_point = nodes.size() / reports.size();
   return {nodes.subspan(first * per_point, count * per_point), reports.subspan(first, count),
-          empties.subspan(first, count)};
+          empties.subspan(first, count), masked.subspan(first, count)};
 }
 
 TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const EvidenceOptions& options,
@@ -36,7 +41,8 @@ TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const Ev
       ratio_(sensor),
       integral_(options.visibility_prior, options.rule == EvidenceRule::Outside ? options.visibility : 1.0,
                 total_weight),
-      no_return_(static_cast<float>(logNoReturnRatio(miss_rate))) {}
+      no_return_(static_cast<float>(logNoReturnRatio(miss_rate))),
+      mask_(static_cast<float>(logMaskRatio(options.mask_error))) {}
 
 void TestimonySum::add(const PreparedView& view, const PointBlock& block, float weight,
                        const TestimonySums& sums) const {
@@ -57,10 +63,12 @@ void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& bl
   const BlockLook seen = look(prepared, block);
   const BlockTestimony said = testify(prepared, ratio_, seen, block.size);
   accumulate(integral_, said, weight, block.size, sums.nodes.data());
-  const std::uint8_t* no_return = prepared.view->no_return.data();
   for (std::size_t i = 0; i < block.size; ++i) {
     sums.reports[i] += weight * said.measured[i];
-    if (seen.pixel[i] >= 0 && said.measured[i] == 0 && no_return[seen.pixel[i]]) sums.empties[i] += weight;
+    if (seen.pixel[i] < 0 || said.measured[i] != 0) continue;
+    const Look look = prepared.view->look.data()[seen.pixel[i]];
+    if (look == Look::Empty) sums.empties[i] += weight;
+    if (look == Look::Outside) sums.masked[i] += weight;
   }
 }
 
@@ -71,9 +79,10 @@ void TestimonySum::addPaper(const PreparedView& prepared, const PointBlock& bloc
   const BlockTestimony said = testify(prepared, ratio_, seen, block.size);
   const float sign = weight > 0 ? 1.0f : -1.0f;
   for (std::size_t i = 0; i < block.size; ++i) {
-    if (said.measured[i] == 0) continue;
+    const bool masked = seen.pixel[i] >= 0 && prepared.view->look.data()[seen.pixel[i]] == Look::Outside;
+    if (said.measured[i] == 0 && !masked) continue;
     const float t = (ratio_.clampDepth(seen.depth[i]) - ratio_.near()) * ratio_.perRange();
-    sums.nodes[i] -= sign * softplus(std::log((1 - t) / t) + said.log_ratio[i]);
+    sums.nodes[i] -= sign * softplus(std::log((1 - t) / t) + (masked ? mask_ : said.log_ratio[i]));
     sums.reports[i] += sign;
   }
 }
@@ -83,7 +92,9 @@ void TestimonySum::addNoSelfOcclusion(const PreparedView& prepared, const PointB
                                       const TestimonySums& sums) const {
   for (std::size_t i = 0; i < block.size; ++i) {
     const std::optional<Sighting> seen = prepared.projector(block.point(i));
-    if (!seen || prepared.view->depth(seen->x, seen->y) == kInvalidDepth) continue;
+    if (!seen) continue;
+    if (prepared.view->look(seen->x, seen->y) == Look::Outside) sums.masked[i] += weight;
+    if (prepared.view->depth(seen->x, seen->y) == kInvalidDepth) continue;
     const std::size_t pixel = static_cast<std::size_t>(seen->y * prepared.view->depth.width() + seen->x);
     sums.nodes[i] +=
         weight * static_cast<float>(logVisibleOdds(sensor_, measurementAt(prepared, pixel), seen->depth));
@@ -91,12 +102,22 @@ void TestimonySum::addNoSelfOcclusion(const PreparedView& prepared, const PointB
   }
 }
 
-float TestimonySum::outside(const float* nodes, float reports, float empties) const {
-  const float counted = std::min(empties, static_cast<float>(options_.max_no_returns));
+float TestimonySum::outside(const TestimonySums& sums, std::size_t point) const {
+  const float* nodes = &sums.nodes[point * nodeCount()];
   std::vector<float> with(nodes, nodes + nodeCount());
-  if (counted > 0) integral_.add(no_return_, counted, with.data());
-  return static_cast<float>(std::min(options_.prior, integral_.halfDenial(reports)) +
+  const float empties = std::min(sums.empties[point], static_cast<float>(options_.max_no_returns));
+  if (empties > 0) integral_.add(no_return_, empties, with.data());
+  const float masked = sums.masked[point], unconfirmed = std::min(masked, kUnconfirmedMasks);
+  if (masked > 0) integral_.add(std::min(mask_, kUnconfirmedMask), unconfirmed, with.data());
+  if (masked > unconfirmed) integral_.add(mask_, masked - unconfirmed, with.data());
+  return static_cast<float>(std::min(options_.prior, integral_.halfDenial(sums.reports[point])) +
                             integral_.logMean(with.data()));
+}
+
+// Without self-occlusion a view that leaves the point out counts with its whole ratio, but for the first one.
+float TestimonySum::maskTerm(float masked) const {
+  const float unconfirmed = std::min(masked, kUnconfirmedMasks);
+  return unconfirmed * std::min(mask_, kUnconfirmedMask) + (masked - unconfirmed) * mask_;
 }
 
 void TestimonySum::finish(const TestimonySums& sums, float* evidence) const {
@@ -104,7 +125,7 @@ void TestimonySum::finish(const TestimonySums& sums, float* evidence) const {
     const float* nodes = &sums.nodes[i * nodeCount()];
     switch (options_.rule) {
       case EvidenceRule::Outside:
-        evidence[i] = outside(nodes, sums.reports[i], sums.empties[i]);
+        evidence[i] = outside(sums, i);
         break;
       case EvidenceRule::Paper:
         evidence[i] = sums.reports[i] > 0.5f
@@ -112,7 +133,7 @@ void TestimonySum::finish(const TestimonySums& sums, float* evidence) const {
                           : static_cast<float>(options_.prior);
         break;
       case EvidenceRule::NoSelfOcclusion:
-        evidence[i] = *nodes;
+        evidence[i] = *nodes + maskTerm(sums.masked[i]);
         break;
       case EvidenceRule::Constant:
         evidence[i] = static_cast<float>(-options_.balloon);

@@ -15,6 +15,7 @@ struct TestimonySums {
   std::span<float> nodes;    ///< nodeCount() a point
   std::span<float> reports;  ///< Σ w of the views that measured something
   std::span<float> empties;  ///< Σ w of the views whose sensor met nothing
+  std::span<float> masked;   ///< Σ w of the views whose silhouette leaves the point out
 
   TestimonySums part(std::size_t first, std::size_t count) const;
 };
@@ -41,13 +42,14 @@ class TestimonySum {
                 const TestimonySums& sums) const;
   void addNoSelfOcclusion(const PreparedView& view, const PointBlock& block, float weight,
                           const TestimonySums& sums) const;
-  float outside(const float* nodes, float reports, float empties) const;
+  float outside(const TestimonySums& sums, std::size_t point) const;
+  float maskTerm(float masked) const;
 
   EvidenceOptions options_;
   SensorModel sensor_;
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
-  float no_return_;
+  float no_return_, mask_;
 };
 
 }  // namespace vdbfuse

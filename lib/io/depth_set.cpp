@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/masks.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/io/pcd.h"
@@ -62,6 +63,7 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
        "NAME.depth.png         16-bit grey, millimetres (--depth-scale 0.001), 0 and 65535 invalid\n"
        "NAME.pose.txt          4x4 or 3x4 matrix world_from_camera\n"
        "NAME.color.png|jpg     optional\n"
+       "NAME.mask.png          optional, 8 bit, black where the object is not; or masks/NAME.png\n"
        "*intrinsics*.txt       3x3 matrix, the same for all frames\n",
        detectRgbdFolder, readRgbdFolder},
       {"mvsnet", "depth maps of multi-view stereo in the folders of MVSNet",
@@ -69,7 +71,8 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
        "interval\n"
        "depth_est/00000000.pfm    z, 0 invalid\n"
        "confidence/00000000.pfm   optional\n"
-       "images/00000000.png|jpg   optional\n",
+       "images/00000000.png|jpg   optional\n"
+       "masks/00000000.png        optional, 8 bit, black where the object is not\n",
        detectMvsnet, readMvsnet},
       {"pcd", "organised point clouds of the Point Cloud Library, one file or a folder",
        "NAME.pcd   ascii, binary or compressed; x y z as 4-byte floats in the sensor's frame; HEIGHT above "
@@ -92,6 +95,7 @@ DepthSet readDepthSet(const std::filesystem::path& path, const ReadOptions& opti
   const DepthSetFormat& format = options.format.empty() ? bestFormat(path) : formatNamed(options.format);
   DepthSet set = format.read(path, options);
   set.format = format.name;
+  addMasks(set, path, options.masks);
   return set;
 }
 

@@ -11,6 +11,12 @@ void normaliseInvalid(Image<float>& depth) {
   }
 }
 
+void applyMask(DepthMap& map) {
+  for (std::size_t i = 0; i < map.mask.size(); ++i) {
+    if (!map.mask.data()[i]) map.depth.data()[i] = kInvalidDepth;
+  }
+}
+
 Eigen::Vector3d worldPoint(const View& view, int x, int y) {
   return view.world_from_camera * unproject(view.projection, x, y, view.map.depth(x, y));
 }
@@ -26,6 +32,9 @@ std::vector<std::string> validate(const View& view) {
   }
   if (!view.map.confidence.empty() && !view.map.confidence.sameSize(depth)) {
     problems.emplace_back("confidence and depth differ in size");
+  }
+  if (!view.map.mask.empty() && !view.map.mask.sameSize(depth)) {
+    problems.emplace_back("mask and depth differ in size");
   }
   if (view.map.alternatives.size() > 3) problems.emplace_back("there are more than three alternative depths");
   for (const DepthAlternative& alternative : view.map.alternatives) {

@@ -22,6 +22,7 @@ View ViewSequence::load(std::size_t index) const {
   normaliseInvalid(view.map.depth);
   const std::vector<std::string> problems = validate(view);
   if (!problems.empty()) throw InvalidArgument("view " + view.name, problems.front());
+  applyMask(view.map);
   return view;
 }
 

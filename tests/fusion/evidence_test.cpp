@@ -53,7 +53,7 @@ TEST_P(EveryRule, TheOrderOfTheViewsDoesNotMatter) {
   Random random(2);
   for (JudgedView& view : judged.views) {
     view.weight = random.uniform(0.2, 1);
-    view.no_return = Image<std::uint8_t>(64, 64, 1);
+    view.look = Image<Look>(64, 64, Look::Empty);
   }
   const Points points = randomPoints(300);
   const std::vector<float> expected = evidenceAt(judged, points, rule(GetParam()));
@@ -100,7 +100,7 @@ TEST(Evidence, RepeatedViewsWithSharedWeightsCountOnce) {
   for (const bool no_return : {false, true}) {
     JudgedViews once = sphere(8);
     if (no_return)
-      for (JudgedView& view : once.views) view.no_return = Image<std::uint8_t>(64, 64, 1);
+      for (JudgedView& view : once.views) view.look = Image<Look>(64, 64, Look::Empty);
     JudgedViews tripled = once;
     tripled.views.clear();
     for (const JudgedView& view : once.views)
@@ -118,7 +118,7 @@ TEST(Evidence, NoReturnsSpeakForOutsideButOnlyAFewOfThem) {
   for (JudgedView& view : judged.views) {
     view.depth = Image<float>(64, 64, kInvalidDepth);
     view.projection = test::cameraFor(64, 1.2, 2);
-    view.no_return = Image<std::uint8_t>(64, 64, 1);
+    view.look = Image<Look>(64, 64, Look::Empty);
   }
   EvidenceOptions options;
   const float four = evidenceAt(judged, aside, options).front();
@@ -127,6 +127,48 @@ TEST(Evidence, NoReturnsSpeakForOutsideButOnlyAFewOfThem) {
   EXPECT_GT(evidenceAt(judged, aside, options).front(), four + 1);
   options.max_no_returns = 0;
   EXPECT_NEAR(evidenceAt(judged, aside, options).front(), 0.0f, 1e-6f);
+}
+
+// Views of a sphere in which the first `count` have masks that call everything background.
+JudgedViews wronglyMasked(int views, std::size_t count) {
+  JudgedViews judged = sphere(views, kMinOutlier);
+  for (std::size_t i = 0; i < count; ++i) judged.views[i].look = Image<Look>(64, 64, Look::Outside);
+  return judged;
+}
+
+TEST_P(EveryRule, APixelOutsideTheMaskIsFreeAlongItsWholeRayWhateverItMeasured) {
+  JudgedViews with_depth = wronglyMasked(4, 4), without = with_depth;
+  for (JudgedView& view : without.views) view.depth = Image<float>(64, 64, kInvalidDepth);
+  const Points points = randomPoints(300);
+  const std::vector<float> e = evidenceAt(with_depth, points, rule(GetParam()));
+  EXPECT_EQ(e, evidenceAt(without, points, rule(GetParam())));
+  for (const float value : e) EXPECT_GT(value, 0);
+}
+
+TEST(Evidence, TwoMasksCarveWhatTheOtherViewsDoNotSeeAndMoreOfThemMore) {
+  float last = -100;
+  for (const std::size_t masks : {0u, 1u, 2u, 4u}) {
+    const float e = evidenceAt(wronglyMasked(6, masks), {{0, 0, 0}}, {}).front();
+    EXPECT_GT(e, last) << masks;
+    last = e;
+  }
+  EXPECT_GT(last, 0);
+}
+
+TEST(Evidence, OneWrongMaskOrAnyNumberOfItsCopiesCannotCarveWhatTwoViewsDeny) {
+  for (const int views : {3, 6, 12, 24}) {
+    JudgedViews judged = wronglyMasked(views, 1);
+    EXPECT_LT(evidenceAt(judged, {{0, 0, 0}}, {}).front(), 0) << views;
+    judged.views.front().weight = 0.1;
+    for (int copy = 1; copy < 10; ++copy) judged.views.push_back(judged.views.front());
+    EXPECT_LT(evidenceAt(judged, {{0, 0, 0}}, {}).front(), 0) << views;
+  }
+}
+
+TEST(Evidence, AMaskIsAsStrongAsItIsSeldomWrong) {
+  EXPECT_NEAR(std::exp(logMaskRatio(0.02)), 25, 1e-9);
+  EXPECT_NEAR(logMaskRatio(0.4999), 0, 1e-3);
+  EXPECT_GT(logMaskRatio(0.01), logMaskRatio(0.02));
 }
 
 // π_i and eq. (5) as printed.
@@ -221,8 +263,8 @@ TEST(Evidence, OptionsThatCannotBeAreAllReportedAndRefused) {
   EvidenceOptions options;
   EXPECT_TRUE(validate(options).empty());
   options.visibility_prior = 0, options.visibility = 1.1, options.prior = NAN, options.balloon = -1;
-  options.max_no_returns = -1;
-  EXPECT_EQ(validate(options).size(), 5u);
+  options.max_no_returns = -1, options.mask_error = 0.5;
+  EXPECT_EQ(validate(options).size(), 6u);
   EXPECT_THROW(evidenceAt(sphere(1), {}, options), InvalidArgument);
 }
 

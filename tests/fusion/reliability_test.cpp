@@ -125,12 +125,54 @@ TEST(Judge, NoReturnsMeanEmptySpaceAroundAnObjectUnlessToldOtherwise) {
     JudgeOptions options;
     options.no_return = rule;
     const Judgement judgement = planted.judged(options);
-    const Image<std::uint8_t>& mask = judgement.judged.views[0].no_return;
-    EXPECT_EQ(mask(32, 32), 0);
-    return std::count(mask.begin(), mask.end(), 1);
+    const Image<Look>& look = judgement.judged.views[0].look;
+    EXPECT_EQ(look(32, 32), Look::Nothing);
+    return std::count(look.begin(), look.end(), Look::Empty);
   };
   EXPECT_EQ(marked(JudgeOptions::NoReturn::Ignore), 0);
   EXPECT_GT(marked(JudgeOptions::NoReturn::Free), 100);
+}
+
+TEST(Judge, AMaskSaysWhereTheObjectIsAndWhatIsMissingInsideItIsAHole) {
+  Planted planted(Confidence::None, 0.0);
+  // A dark patch that reaches the silhouette: without a mask nothing tells it from empty space.
+  for (View& view : planted.views) {
+    DepthMap& map = view.map;
+    map.mask = Image<std::uint8_t>(64, 64);
+    std::transform(map.depth.begin(), map.depth.end(), map.mask.begin(),
+                   [](float d) -> std::uint8_t { return d != kInvalidDepth ? 255 : 0; });
+    for (int y = 26; y < 38; ++y)
+      for (int x = 0; x < 32; ++x) map.depth(x, y) = kInvalidDepth;
+  }
+  const Judgement masked = planted.judged();
+  for (const JudgedView& view : masked.judged.views)
+    for (std::size_t p = 0; p < view.look.size(); ++p) {
+      const bool object = planted.views.front().map.mask.data()[p] != 0;
+      ASSERT_EQ(view.look.data()[p], object ? Look::Nothing : Look::Outside);
+    }
+  for (View& view : planted.views) view.map.mask = {};
+  EXPECT_EQ(planted.judged().judged.views[0].look(10, 32), Look::Empty);
+}
+
+TEST(Judge, ADepthOutsideTheMaskIsBackgroundAndNeighboursWithAMaskContradictIt) {
+  // A screen beside the sphere that every view measures at a place of its own.
+  Planted planted(Confidence::None, 0.0);
+  for (View& view : planted.views)
+    for (int x = 0; x < 64; ++x)
+      for (int y = 0; y < 4; ++y) view.map.depth(x, y) = 2.0f;
+  std::vector<View> masked = planted.views;
+  for (View& view : masked) {
+    view.map.mask = Image<std::uint8_t>(64, 64, 1);
+    for (int x = 0; x < 64; ++x)
+      for (int y = 0; y < 4; ++y) view.map.mask(x, y) = 0;
+  }
+  masked[0].map.mask = {};  // one that believes the screen
+  const double believed = planted.judged().judged.views[0].outlier(32, 1);
+  planted.views = masked;
+  const JudgedViews judged = planted.judged().judged;
+  EXPECT_EQ(judged.views[1].depth(32, 1), kInvalidDepth);
+  EXPECT_EQ(judged.views[0].depth(32, 1), 2.0f);
+  EXPECT_GE(judged.views[0].outlier(32, 1), believed);
 }
 
 TEST(Judge, TheMissRateGrowsByWhatIsMissing) {

@@ -139,7 +139,7 @@ TEST(JudgedView, BelievingLeavesDepthsAloneAndGivesEveryPixelTheSameDoubt) {
   EXPECT_EQ(judged.views[1].world_from_camera.translation(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(judged.views[1].depth, view.map.depth);
   EXPECT_EQ(judged.views[1].outlier, Image<float>(3, 2, 0.25f));
-  EXPECT_EQ(judged.views[1].no_return, Image<std::uint8_t>(3, 2));
+  EXPECT_EQ(judged.views[1].look, Image<Look>(3, 2, Look::Nothing));
   EXPECT_EQ(judged.views[1].weight, 1.0);
 }
 

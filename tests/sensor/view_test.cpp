@@ -91,5 +91,29 @@ TEST(ViewSequence, TheFirstViewsAreACopyThatStopsEarlier) {
   EXPECT_TRUE(ViewSequence().empty());
 }
 
+TEST(Mask, WhatIsMeasuredOutsideItIsBackground) {
+  View view;
+  view.projection = Pinhole{2, 1, 1, 1, 0, 0, {}};
+  view.map.depth = Image<float>(2, 1, 3.0f);
+  view.map.mask = Image<std::uint8_t>(2, 1);
+  view.map.mask(1, 0) = 255;
+  EXPECT_TRUE(isOutsideMask(view.map, 0, 0));
+  EXPECT_FALSE(isOutsideMask(view.map, 1, 0));
+  const DepthMap loaded = ViewSequence::fromViews({view}).load(0).map;
+  EXPECT_EQ(loaded.depth(0, 0), kInvalidDepth);
+  EXPECT_EQ(loaded.depth(1, 0), 3.0f);
+  view.map.mask = {};
+  EXPECT_FALSE(isOutsideMask(view.map, 0, 0));
+  EXPECT_EQ(ViewSequence::fromViews({view}).load(0).map.depth, view.map.depth);
+}
+
+TEST(Mask, OfAnotherSizeIsReported) {
+  View view;
+  view.projection = Pinhole{2, 1, 1, 1, 0, 0, {}};
+  view.map.depth = Image<float>(2, 1, 3.0f);
+  view.map.mask = Image<std::uint8_t>(1, 2);
+  EXPECT_EQ(validate(view), std::vector<std::string>{"mask and depth differ in size"});
+}
+
 }  // namespace
 }  // namespace vdbfuse

@@ -90,6 +90,7 @@ Json jsonOf(const InfoOptions& options) {
   json["depth_scale"] = options.read.depth_scale ? Json(*options.read.depth_scale) : Json(nullptr);
   json["depth_kind"] = options.read.depth_kind ? Json(nameOf(*options.read.depth_kind)) : Json(nullptr);
   json["baseline"] = options.read.baseline ? Json(*options.read.baseline) : Json(nullptr);
+  json["masks"] = options.read.masks.empty() ? Json(nullptr) : Json(options.read.masks.string());
   json["min_depth"] = options.read.min_depth;
   json["max_depth"] = std::isfinite(options.read.max_depth) ? Json(options.read.max_depth) : Json(nullptr);
   return json;

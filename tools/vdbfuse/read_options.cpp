@@ -65,6 +65,11 @@ void addReadOptions(CLI::App& command, ReadOptions& options) {
           "Distance between the two cameras, for --depth-kind disparity")
       ->check(CLI::PositiveNumber)
       ->group(group);
+  command
+      .add_option("--masks", options.masks,
+                  "Folder of silhouettes NAME.png, black where the object is not; default: what lies in the "
+                  "data set")
+      ->group(group);
   command.add_option("--min-depth", options.min_depth, "Nearer depths are left out")
       ->check(CLI::NonNegativeNumber)
       ->group(group);

@@ -8,7 +8,7 @@
 namespace vdbfuse::tool {
 
 /// The options of every subcommand that reads a data set: --format, --depth-scale, --depth-kind, --baseline,
-/// --min-depth, --max-depth. `options` must outlive the parsing.
+/// --masks, --min-depth, --max-depth. `options` must outlive the parsing.
 void addReadOptions(CLI::App& command, ReadOptions& options);
 
 /// "z", "range", "disparity" or "inverse", as on the command line.

@@ -41,12 +41,22 @@ struct EvidenceOptions {
   double balloon = 1.0;
   /// At most so many views' no-returns count at a point, by their weights.
   int max_no_returns = 4;
+  /// Share m of the pixels of silhouette masks that call object what is background, or the reverse, in (0,
+  /// 0.5). Smaller: masks that confirm each other carve more against depths that deny (logMaskRatio).
+  double mask_error = 0.02;
 };
 
 std::vector<std::string> validate(const EvidenceOptions& options);
 
 /// log L of a look that met nothing: L = (q + (1−q) m)/m with q = ½ and the miss rate m not below 0.2.
 double logNoReturnRatio(double miss_rate);
+
+/// log L of a pixel outside its silhouette mask. A ray through the object at x is called outside with
+/// probability m only; a ray that sees past x is called so with 1 − m when it meets nothing behind x (q = ½),
+/// else with m:  L = (q (1−m) + (1−q) m)/m, 25 for m = 0.02. It holds along the whole ray, with or without a
+/// depth. In the rules Outside and NoSelfOcclusion the first view's worth of masks at a point counts with L ≤
+/// 3 only, so that no single mask carves what two views deny.
+double logMaskRatio(double mask_error);
 
 /// Evidence at world points. One value a point.
 std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points,

@@ -30,6 +30,10 @@ struct ReadOptions {
   /// invalid.
   double min_depth = 0.0;
   double max_depth = std::numeric_limits<double>::infinity();
+  /// Folder of silhouette masks NAME.png, one for every view: any 8-bit PNG of the depth map's size, black
+  /// where the object is not. Empty: masks/NAME.png or NAME.mask.png in the data set, for the views that have
+  /// one.
+  std::filesystem::path masks;
   enum class Color { Load, Skip };
   /// Skip saves the time to decode the pictures.
   Color color = Color::Load;

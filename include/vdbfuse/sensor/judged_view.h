@@ -13,6 +13,13 @@ namespace vdbfuse {
 inline constexpr float kMinOutlier = 0.003f;
 inline constexpr float kMaxOutlier = 0.99f;
 
+/// What a pixel says of its whole ray, beside its depth or in place of one.
+enum class Look : std::uint8_t {
+  Nothing,
+  Empty,    ///< nothing came back, for a reason that means empty space
+  Outside,  ///< outside the silhouette mask: the ray meets no part of the object
+};
+
 struct JudgedView : ViewHeader {
   Image<float> depth;
   /// ε of each pixel: probability that its depth has nothing to do with the surface. Same size as `depth`.
@@ -22,8 +29,9 @@ struct JudgedView : ViewHeader {
   /// Cosine between the optic ray and the surface normal; 0 where the normal is not known. Same size as
   /// `depth`.
   Image<float> incidence;
-  /// 1 where the sensor looked and nothing came back for a reason that means empty space; else 0.
-  Image<std::uint8_t> no_return;
+  /// Empty counts only where the depth is missing; where it says Outside the depth does not count. Same size
+  /// as `depth`.
+  Image<Look> look;
   /// w_i in (0, 1]: how much of this view is not a repetition of its neighbours.
   double weight = 1.0;
 };
@@ -36,7 +44,8 @@ struct JudgedViews {
   double miss_rate = 0.5;
 };
 
-/// Views that are believed as they are: every valid pixel has outlier probability `outlier`.
+/// Views that are believed as they are: every valid pixel has outlier probability `outlier`, and the masks
+/// say where to look past the object.
 JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier = kMinOutlier);
 
 /// Noise scale of a measurement that is looked up at the nearest pixel: sensor noise plus the slack of a

@@ -2,6 +2,7 @@
 // A depth map and the sensor that took it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,16 @@ struct DepthMap {
   Image<Rgb8> color;
   /// Up to three, of the size of `depth`; `depth` itself has the share that they leave.
   std::vector<DepthAlternative> alternatives;
+  /// Silhouette of the object: non-zero where the pixel sees it. Same size as `depth`; empty when there is
+  /// none. What is measured outside it is background: ViewSequence::load() makes it invalid.
+  Image<std::uint8_t> mask;
 };
+
+/// Whether the pixel looks past the object, whatever it measured.
+inline bool isOutsideMask(const DepthMap& map, int x, int y) { return !map.mask.empty() && !map.mask(x, y); }
+
+/// Makes every depth outside the mask invalid. REQUIRES: the mask is empty or of the depth's size.
+void applyMask(DepthMap& map);
 
 /// Turns every non-finite, zero or negative depth into kInvalidDepth. Readers call it once.
 void normaliseInvalid(Image<float>& depth);
