@@ -17,6 +17,9 @@ constexpr int kNodes = 8;
 constexpr double kViewsOfEightNodes = 200;
 constexpr double kPriorOfOutside = 0.75;
 constexpr float kNobodyDenies = 2.0f;
+// Views that repeat each other share the weight of one: taking away a view's own share alone would leave its
+// copies to confirm its mistakes.
+constexpr float kOwnWeight = 1.0f;
 constexpr std::array kBinEnds = {-3.0f, -2.0f, -1.0f, -0.3f, 0.5f, 2.0f};
 
 std::uint8_t denialBin(float evidence) {
@@ -112,8 +115,8 @@ class TestimonyGrid {
       if (measured != kInvalidDepth) {
         const float ratio = ratio_.log(measured, prepared.noise.at(measured), view.outlier(seen->x, seen->y),
                                        static_cast<float>(seen->depth));
-        integral_.add(ratio, -static_cast<float>(view.weight), sums.data());
-        reports -= static_cast<float>(view.weight);
+        integral_.add(ratio, -kOwnWeight, sums.data());
+        reports -= kOwnWeight;
       }
     }
     return combine(sums.data(), std::max(reports, 0.0f));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fusion/two_class_em.h"
 
@@ -48,9 +49,9 @@ constexpr double kUndecided = 0.5;
 // Only evidence against condemns: a pixel of which nobody knows anything stays undecided, and never ends up
 // worse than that or than its confidence alone would have it.
 double firstGuess(const T& t) {
-  constexpr std::uint8_t kContinues = 2, kDenied = 4;  // smallest evidence of the others below −0.3
+  constexpr std::uint8_t kContinues = 2;
   if (t.agreement >= 2 && t.continuity >= kContinues) return 0.0;
-  if (t.contradiction > t.agreement || t.denial < kDenied) return 1.0;
+  if (t.contradiction > t.agreement) return 1.0;
   return kUndecided;
 }
 
@@ -61,20 +62,18 @@ struct Split {
 };
 
 Split splitWithConfidence() {
-  return {{kConfidences, T::kAgreements * T::kContradictions * T::kContinuities, T::kDenials},
-          [](const Outcome& o) {
+  return {{kConfidences, T::kAgreements * T::kContradictions * T::kContinuities}, [](const Outcome& o) {
             const T& t = o.testimony;
             const std::size_t cell =
                 (t.agreement * T::kContradictions + t.contradiction) * T::kContinuities + t.continuity;
-            return std::vector<std::size_t>{o.confidence, cell, t.denial};
+            return std::vector<std::size_t>{o.confidence, cell};
           }};
 }
 
 Split splitWithoutConfidence() {
-  return {{T::kAgreements * T::kContradictions, T::kContinuities, T::kDenials}, [](const Outcome& o) {
+  return {{T::kAgreements * T::kContradictions, T::kContinuities}, [](const Outcome& o) {
             const T& t = o.testimony;
-            return std::vector<std::size_t>{t.agreement * T::kContradictions + t.contradiction, t.continuity,
-                                            t.denial};
+            return std::vector<std::size_t>{t.agreement * T::kContradictions + t.contradiction, t.continuity};
           }};
 }
 
@@ -89,6 +88,26 @@ std::vector<double> countOutcomes(const Testimonies& testimonies,
     }
   }
   return counts;
+}
+
+// One step of Bayes' rule with the histograms of denial that the posterior so far gives. EM over denial as
+// well would let the classes drift: where most outliers are isolated or denied, wrong patches in front of the
+// surface, which nobody denies, would end up among the inliers.
+void hearDenial(const std::vector<double>& counts, std::vector<double>& table) {
+  std::array<double, T::kDenials> good, bad;
+  good.fill(1.0), bad.fill(1.0);
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const std::size_t bin = outcomeAt(k).testimony.denial;
+    good[bin] += counts[k] * (1 - table[k]), bad[bin] += counts[k] * table[k];
+  }
+  const double good_total = std::accumulate(good.begin(), good.end(), 0.0);
+  const double bad_total = std::accumulate(bad.begin(), bad.end(), 0.0);
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const std::size_t bin = outcomeAt(k).testimony.denial;
+    const double against = table[k] * bad[bin] / bad_total,
+                 in_favour = (1 - table[k]) * good[bin] / good_total;
+    table[k] = against / (against + in_favour);
+  }
 }
 
 }  // namespace
@@ -130,6 +149,19 @@ double ReliabilityTable::outlier(std::size_t confidence, const PixelTestimony& t
   return table_[outcome(confidence, testimony)];
 }
 
+void ReliabilityTable::describe(const std::vector<double>& counts) {
+  std::array<double, kConfidences> all{}, bad{};
+  double total = 0, bad_total = 0;
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const std::size_t c = outcomeAt(k).confidence;
+    all[c] += counts[k], bad[c] += counts[k] * table_[k];
+  }
+  for (std::size_t c = 0; c < kConfidences; ++c) total += all[c], bad_total += bad[c];
+  outlier_share_ = (bad_total + 1) / (total + 2);
+  for (std::size_t c = 0; c < kConfidences; ++c)
+    by_confidence_[c] = all[c] > 0 ? bad[c] / all[c] : outlier_share_;
+}
+
 ReliabilityTable learnReliability(const Testimonies& testimonies,
                                   const std::vector<Image<std::uint8_t>>& confidence, bool has_confidence) {
   const std::vector<double> counts = countOutcomes(testimonies, confidence);
@@ -147,22 +179,17 @@ ReliabilityTable learnReliability(const Testimonies& testimonies,
   const TwoClassModel model = fitTwoClasses(joint, std::move(guess));
 
   ReliabilityTable result;
-  result.outlier_share_ = model.outlier_share;
   result.table_.resize(kOutcomes);
-  std::array<double, kConfidences> all{}, bad{};
-  for (std::size_t k = 0; k < kOutcomes; ++k) {
-    const Outcome o = outcomeAt(k);
-    result.table_[k] = model.outlierGiven(split.values(o));
-    all[o.confidence] += counts[k], bad[o.confidence] += counts[k] * result.table_[k];
-  }
-  for (std::size_t c = 0; c < kConfidences; ++c) {
-    result.by_confidence_[c] = all[c] > 0 ? bad[c] / all[c] : model.outlier_share;
-  }
+  for (std::size_t k = 0; k < kOutcomes; ++k)
+    result.table_[k] = model.outlierGiven(split.values(outcomeAt(k)));
+  result.describe(counts);
   for (std::size_t k = 0; k < kOutcomes; ++k) {
     const Outcome o = outcomeAt(k);
     if (firstGuess(o.testimony) != kUndecided) continue;
     result.table_[k] = std::min(result.table_[k], std::max(kUndecided, result.by_confidence_[o.confidence]));
   }
+  hearDenial(counts, result.table_);
+  result.describe(counts);
   return result;
 }
 

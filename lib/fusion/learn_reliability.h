@@ -30,6 +30,7 @@ class ReliabilityTable {
   const std::array<double, ReliabilityModel::kConfidences>& byConfidence() const { return by_confidence_; }
 
  private:
+  void describe(const std::vector<double>& counts);
   friend ReliabilityTable learnReliability(const Testimonies&, const std::vector<Image<std::uint8_t>>&, bool);
   double outlier_share_ = 0;
   std::array<double, ReliabilityModel::kConfidences> by_confidence_{};

@@ -2,6 +2,7 @@
 // What every gathering loop needs of a view, made ready once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -48,10 +49,12 @@ struct PreparedView {
   PreparedView(const JudgedView& judged, const SensorModel& sensor)
       : view(&judged),
         projector(judged.projection, judged.world_from_camera),
-        noise(sensor, judged.projection) {}
+        noise(sensor, judged.projection),
+        has_mask(std::find(judged.look.begin(), judged.look.end(), Look::Outside) != judged.look.end()) {}
   const JudgedView* view;
   Projector projector;
   NoiseTable noise;
+  bool has_mask;  ///< some pixel looks past the object
 };
 
 /// visit(depth, share of the inliers) for all that a pixel may have measured. REQUIRES: its depth is valid.

@@ -17,6 +17,18 @@ constexpr float kUnconfirmedMasks = 1.0f, kUnconfirmedMask = 1.0986123f;
 // log(1 + e^x)
 float softplus(float x) { return x > 30 ? x : std::log1p(std::exp(x)); }
 
+// What is measured outside the silhouette is not heard.
+BlockTestimony hear(const PreparedView& prepared, const LikelihoodRatio& ratio, const BlockLook& seen,
+                    std::size_t size) {
+  BlockTestimony said = testify(prepared, ratio, seen, size);
+  if (!prepared.has_mask) return said;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (seen.pixel[i] >= 0 && prepared.view->look.data()[seen.pixel[i]] == Look::Outside)
+      said.measured[i] = said.log_ratio[i] = 0.0f;
+  }
+  return said;
+}
+
 Measurement measurementAt(const PreparedView& prepared, std::size_t pixel) {
   Measurement result(0, 1, prepared.view->outlier.data()[pixel]);
   result.count = 0;
@@ -61,7 +73,7 @@ void TestimonySum::add(const PreparedView& view, const PointBlock& block, float 
 void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& block, float weight,
                               const TestimonySums& sums) const {
   const BlockLook seen = look(prepared, block);
-  const BlockTestimony said = testify(prepared, ratio_, seen, block.size);
+  const BlockTestimony said = hear(prepared, ratio_, seen, block.size);
   accumulate(integral_, said, weight, block.size, sums.nodes.data());
   for (std::size_t i = 0; i < block.size; ++i) {
     sums.reports[i] += weight * said.measured[i];
@@ -76,7 +88,7 @@ void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& bl
 void TestimonySum::addPaper(const PreparedView& prepared, const PointBlock& block, float weight,
                             const TestimonySums& sums) const {
   const BlockLook seen = look(prepared, block);
-  const BlockTestimony said = testify(prepared, ratio_, seen, block.size);
+  const BlockTestimony said = hear(prepared, ratio_, seen, block.size);
   const float sign = weight > 0 ? 1.0f : -1.0f;
   for (std::size_t i = 0; i < block.size; ++i) {
     const bool masked = seen.pixel[i] >= 0 && prepared.view->look.data()[seen.pixel[i]] == Look::Outside;
@@ -93,7 +105,10 @@ void TestimonySum::addNoSelfOcclusion(const PreparedView& prepared, const PointB
   for (std::size_t i = 0; i < block.size; ++i) {
     const std::optional<Sighting> seen = prepared.projector(block.point(i));
     if (!seen) continue;
-    if (prepared.view->look(seen->x, seen->y) == Look::Outside) sums.masked[i] += weight;
+    if (prepared.view->look(seen->x, seen->y) == Look::Outside) {
+      sums.masked[i] += weight;
+      continue;
+    }
     if (prepared.view->depth(seen->x, seen->y) == kInvalidDepth) continue;
     const std::size_t pixel = static_cast<std::size_t>(seen->y * prepared.view->depth.width() + seen->x);
     sums.nodes[i] +=

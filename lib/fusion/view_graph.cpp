@@ -54,11 +54,16 @@ std::vector<std::size_t> spreadNeighbours(const ViewGraph& graph, std::size_t vi
   return chosen;
 }
 
+// Views beyond 4 θ add less than 1e-6 each, and come last.
 std::vector<double> weightsFor(const ViewGraph& graph, std::size_t views, double theta) {
   std::vector<double> weights(views);
   for (std::size_t i = 0; i < views; ++i) {
     double sum = 1.0;
-    for (const std::size_t j : graph.byAngle(i)) sum += std::exp(-std::pow(graph.angle(i, j) / theta, 2));
+    for (const std::size_t j : graph.byAngle(i)) {
+      const double ratio = graph.angle(i, j) / theta;
+      if (ratio > 4) break;
+      sum += std::exp(-ratio * ratio);
+    }
     weights[i] = 1.0 / sum;
   }
   return weights;

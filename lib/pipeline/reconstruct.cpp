@@ -8,6 +8,7 @@
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/fusion/tsdf.h"
+#include "vdbfuse/pipeline/judge_scan.h"
 #include "vdbfuse/surface/extract.h"
 
 namespace vdbfuse {
@@ -70,27 +71,21 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
 
 }  // namespace
 
-Reconstruction reconstruct(const ViewSequence& sequence, const ReconstructOptions& options,
+Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& options,
                            const Progress& progress) {
-  requireUsable(sequence, options);
+  return reconstruct(judgeScan(views, options, progress), options, progress);
+}
+
+Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, const Progress& progress) {
+  requireUsable(options);
   Reconstruction result;
   StepTimer timer;
-
-  timer.start("load");
-  std::vector<View> views = loadViews(sequence, progress);
-  result.width = static_cast<std::size_t>(views.front().map.depth.width());
-  result.height = static_cast<std::size_t>(views.front().map.depth.height());
-
-  timer.start("calibrate");
-  const DepthStatistics depths = depthStatistics(views);
-  const ViewGraph graph = makeGraph(views, depths);
-  const SensorModel sensor = calibrateSensor(views, graph, depths, options, result.calibration, progress);
-
-  timer.start("judge");
-  const Judgement judgement =
-      judgeViews(std::move(views), sensor, graph, options, result.calibration, progress);  // ε, w, domain
-  const JudgedViews& judged = judgement.judged;
-  const Box& domain = judgement.domain;
+  result.width = scan.width, result.height = scan.height;
+  result.calibration = scan.calibration;
+  if (options.domain) useDomain(*options.domain, scan.judgement);
+  scan.judgement.judged.sensor.thickness = options.thickness;
+  const JudgedViews& judged = scan.judgement.judged;
+  const Box& domain = scan.judgement.domain;
   const GridFrame frame = chooseFrame(domain, result.calibration, options);
 
   if (options.method == Method::Tsdf) {
@@ -103,7 +98,8 @@ Reconstruction reconstruct(const ViewSequence& sequence, const ReconstructOption
         "the result is empty: no surface inside the domain is supported by the depth maps "
         "(check units and poses with 'vdbfuse info', or give --bbox)");
   }
-  result.steps = timer.finish();
+  result.steps = std::move(scan.steps);
+  for (StepTime& step : timer.finish()) result.steps.push_back(std::move(step));
   return result;
 }
 

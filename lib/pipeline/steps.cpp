@@ -57,9 +57,13 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   return problems;
 }
 
-void requireUsable(const ViewSequence& views, const ReconstructOptions& options) {
+void requireUsable(const ReconstructOptions& options) {
   const std::vector<std::string> problems = validate(options);
   if (!problems.empty()) throw InvalidArgument("options", problems.front());
+}
+
+void requireUsable(const ViewSequence& views, const ReconstructOptions& options) {
+  requireUsable(options);
   if (views.empty()) throw InvalidArgument("views", "there are none");
 }
 
@@ -111,6 +115,11 @@ Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const V
       std::fill(view.outlier.begin(), view.outlier.end(), outlier);
   }
   return judgement;
+}
+
+void useDomain(const Box& domain, Judgement& judgement) {
+  judgement.domain = domain;
+  widenRange(judgement.judged, domain);
 }
 
 GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,

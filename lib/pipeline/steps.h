@@ -8,6 +8,7 @@
 
 namespace vdbfuse {
 
+void requireUsable(const ReconstructOptions& options);
 void requireUsable(const ViewSequence& views, const ReconstructOptions& options);
 
 /// All views in memory, without their colours.
@@ -21,6 +22,9 @@ SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& gra
 
 Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
                      const ReconstructOptions& options, CalibrationReport& report, const Progress& progress);
+
+/// Reconstructs there, whatever place was judged.
+void useDomain(const Box& domain, Judgement& judgement);
 
 /// Voxels at integer multiples of the voxel size from the world's origin.
 GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,

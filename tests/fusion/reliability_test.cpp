@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "fusion/pixel_testimony.h"
 #include "fusion/scenes.h"
 #include "vdbfuse/base/parallel.h"
 
@@ -154,25 +155,32 @@ TEST(Judge, AMaskSaysWhereTheObjectIsAndWhatIsMissingInsideItIsAHole) {
   EXPECT_EQ(planted.judged().judged.views[0].look(10, 32), Look::Empty);
 }
 
-TEST(Judge, ADepthOutsideTheMaskIsBackgroundAndNeighboursWithAMaskContradictIt) {
-  // A screen beside the sphere that every view measures at a place of its own.
+TEST(Judge, ADepthOutsideTheMaskIsBackground) {
   Planted planted(Confidence::None, 0.0);
-  for (View& view : planted.views)
-    for (int x = 0; x < 64; ++x)
-      for (int y = 0; y < 4; ++y) view.map.depth(x, y) = 2.0f;
-  std::vector<View> masked = planted.views;
-  for (View& view : masked) {
+  for (View& view : planted.views) {
     view.map.mask = Image<std::uint8_t>(64, 64, 1);
-    for (int x = 0; x < 64; ++x)
-      for (int y = 0; y < 4; ++y) view.map.mask(x, y) = 0;
+    for (int x = 0; x < 64; ++x) view.map.mask(x, 30) = 0;
   }
-  masked[0].map.mask = {};  // one that believes the screen
-  const double believed = planted.judged().judged.views[0].outlier(32, 1);
-  planted.views = masked;
-  const JudgedViews judged = planted.judged().judged;
-  EXPECT_EQ(judged.views[1].depth(32, 1), kInvalidDepth);
-  EXPECT_EQ(judged.views[0].depth(32, 1), 2.0f);
-  EXPECT_GE(judged.views[0].outlier(32, 1), believed);
+  const JudgedView view = planted.judged().judged.views[1];
+  EXPECT_EQ(view.depth(32, 30), kInvalidDepth);
+  EXPECT_EQ(view.look(32, 30), Look::Outside);
+  EXPECT_EQ(view.depth(32, 31), planted.views[1].map.depth(32, 31));
+  EXPECT_EQ(view.look(32, 31), Look::Nothing);
+}
+
+TEST(Judge, NeighboursContradictAPointOutsideTheirMasks) {
+  std::vector<View> views = test::sphereViews(24);
+  std::vector<PixelSurface> surfaces;
+  for (const View& view : views) surfaces.push_back(analyseSurface(view, test::sphereSensor().noise));
+  const auto neighbours = chooseNeighbours(ViewGraph(test::headersOf(views), 1.7), views.size());
+  const auto hear = [&] {
+    return hearNeighbours(views, surfaces, test::sphereSensor(), neighbours, {}).views[0](32, 32);
+  };
+  EXPECT_EQ(hear().contradiction, 0);
+  EXPECT_GT(hear().agreement, 0);
+  for (std::size_t i = 1; i < views.size(); ++i) views[i].map.mask = Image<std::uint8_t>(64, 64);
+  EXPECT_EQ(hear().contradiction, 2);
+  EXPECT_EQ(hear().agreement, 0);
 }
 
 TEST(Judge, TheMissRateGrowsByWhatIsMissing) {

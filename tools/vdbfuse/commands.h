@@ -15,6 +15,7 @@ using Action = std::function<void()>;
 void addFormats(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);
 void addFuse(CLI::App& app, Action& action);
+void addJudge(CLI::App& app, Action& action);
 void addRender(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addEvaluate(CLI::App& app, Action& action);

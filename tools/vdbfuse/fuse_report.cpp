@@ -43,6 +43,7 @@ const char* nameOf(ConfidenceDirection direction) {
 }
 
 const char* lawName(int exponent) {
+  if (exponent < 0) return "given";
   return exponent == 0 ? "constant" : exponent == 1 ? "linear" : "quadratic";
 }
 
@@ -50,18 +51,21 @@ Json json(const Box& box) {
   return {box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()};
 }
 
-Json optionsJson(const Reconstruction& result, const ReconstructOptions& o) {
+Json optionsJson(const Reconstruction& result, const FuseContext& context) {
+  const ReconstructOptions& o = context.options;
   Json j = {{"method", nameOf(o.method)},
             {"voxel", result.grid.voxel},
             {"bbox", json(result.grid.domain)},
             {"noise", o.noise_shape.name},
             {"outliers", o.outliers ? Json(*o.outliers) : Json("auto")},
             {"denial", o.judge.denial == JudgeOptions::Denial::Examine ? "examine" : "skip"},
+            {"judgement", context.judgement.empty() ? Json(nullptr) : Json(context.judgement.string())},
             {"rule", nameOf(o.evidence.rule)},
             {"visibility_prior", o.evidence.visibility_prior},
             {"visibility", o.evidence.visibility},
             {"prior", o.evidence.prior},
             {"balloon", o.evidence.balloon},
+            {"mask_error", o.evidence.mask_error},
             {"mu", o.mu}};
   if (result.cut) j.update({{"lambda", result.cut->lambda}, {"border", nameOf(result.cut->border)}});
   return j;
@@ -109,7 +113,7 @@ double totalSeconds(const std::vector<StepTime>& steps) {
 void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result,
                    const FuseContext& context) {
   Json j = jsonOf("fuse");
-  j["options"] = optionsJson(result, context.options);
+  j["options"] = optionsJson(result, context);
   j["input"] = {{"path", context.input.string()},
                 {"views", context.views},
                 {"width", result.width},

@@ -11,7 +11,7 @@ namespace vdbfuse::tool {
 
 /// What a run of fuse knows besides its result.
 struct FuseContext {
-  std::filesystem::path input;
+  std::filesystem::path input, judgement;
   std::string format;
   std::size_t views = 0;
   ReconstructOptions options;

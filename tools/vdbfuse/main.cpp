@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   vdbfuse::tool::Action action;
   vdbfuse::tool::addFormats(app, action);
   vdbfuse::tool::addInfo(app, action);
+  vdbfuse::tool::addJudge(app, action);
   vdbfuse::tool::addFuse(app, action);
   vdbfuse::tool::addRender(app, action);
   vdbfuse::tool::addSynth(app, action);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sensor_options.h"
+
+#include <cstdio>
+
+#include "choice.h"
+#include "vdbfuse/base/errors.h"
+
+namespace vdbfuse::tool {
+namespace {
+
+const std::vector<std::string> kShapes = {"gaussian", "logistic", "laplace"};
+using NoReturn = JudgeOptions::NoReturn;
+const std::map<std::string, NoReturn> kNoReturns = {
+    {"ignore", NoReturn::Ignore}, {"free", NoReturn::Free}, {"auto", NoReturn::Auto}};
+
+double parseShare(const std::string& text) {
+  const double value = parseNumber(text).value_or(-1);
+  if (!(value >= 0 && value < 1))
+    throw InvalidArgument("--outliers", "expected 'auto' or a share in [0, 1), found '" + text + "'");
+  return value;
+}
+
+std::vector<std::string> presetNames() {
+  std::vector<std::string> names;
+  for (const SensorPreset& preset : sensorPresets()) names.push_back(preset.name);
+  return names;
+}
+
+}  // namespace
+
+std::optional<double> parseNumber(const std::string& text) {
+  std::size_t used = 0;
+  try {
+    const double value = std::stod(text, &used);
+    if (used == text.size()) return value;
+  } catch (const std::exception&) {
+  }
+  return std::nullopt;
+}
+
+std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& arguments,
+                                           ReconstructOptions& options) {
+  addReadOptions(app, arguments.read);
+  app.add_option("--views", arguments.views, "Use the first N views only")->check(CLI::PositiveNumber);
+  app.add_option("--bbox", arguments.box, "Domain x0,y0,z0,x1,y1,z1; default: where the views agree")
+      ->delimiter(',')
+      ->expected(6);
+  CLI::Option* sensor =
+      app.add_option("--sensor", arguments.sensor,
+                     "Noise of a known sensor, poses in metres; default: from the overlap of the views")
+          ->check(CLI::IsMember(presetNames()));
+  return {
+      app.add_option("--noise", arguments.noise, "Shape of the noise of depths")
+          ->check(CLI::IsMember(kShapes))
+          ->capture_default_str(),
+      sensor,
+      app.add_option("--noise-scale", options.noise_scale,
+                     "Standard deviation at the median depth; default: from the overlap of the views")
+          ->check(CLI::PositiveNumber)
+          ->excludes(sensor),
+      app.add_option("--outliers", arguments.outliers,
+                     "Share of wrong depths, the same for every pixel; auto: judged by pixel")
+          ->capture_default_str(),
+      app.add_flag("--no-reliability", arguments.no_reliability, "Believe every pixel (as --outliers 0.01)"),
+      app.add_flag("--no-denial", arguments.no_denial,
+                   "Judge pixels without the second pass, leave-one-out denial"),
+      choice(app, "--no-return", options.judge.no_return, kNoReturns,
+             "What a missing depth around an object means")};
+}
+
+void resolve(const SensorArguments& arguments, ReconstructOptions& options) {
+  constexpr double kBelieveAll = 0.01;
+  if (arguments.no_reliability) options.outliers = kBelieveAll;
+  if (arguments.outliers != "auto") options.outliers = parseShare(arguments.outliers);
+  if (arguments.no_denial) options.judge.denial = JudgeOptions::Denial::Skip;
+  options.noise_shape = noiseShape(arguments.noise);
+  if (!arguments.sensor.empty()) options.noise = sensorPreset(arguments.sensor).noise;
+  const std::vector<double>& b = arguments.box;
+  if (b.empty()) return;
+  options.domain = Box(Eigen::Vector3d(b[0], b[1], b[2]), Eigen::Vector3d(b[3], b[4], b[5]));
+  if (options.domain->isEmpty()) throw InvalidArgument("--bbox", "the lower corner must come first");
+}
+
+DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words) {
+  ReadOptions read = arguments.read;
+  read.color = ReadOptions::Color::Skip;
+  DepthSet set = readDepthSet(input, read);
+  if (arguments.views > 0) set.views = set.views.first(arguments.views);
+  if (words == Words::Keep) return set;
+  for (const std::string& note : set.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  return set;
+}
+
+}  // namespace vdbfuse::tool

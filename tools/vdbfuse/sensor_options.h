@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The options of every subcommand that judges a data set: what to read, the sensor, the place.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "read_options.h"
+#include "vdbfuse/pipeline/reconstruct.h"
+
+namespace vdbfuse::tool {
+
+/// As given on the command line.
+struct SensorArguments {
+  ReadOptions read;
+  std::size_t views = 0;
+  std::vector<double> box;
+  std::string outliers = "auto", noise = "gaussian", sensor;
+  bool no_reliability = false, no_denial = false;
+};
+
+/// --bbox, --views, --noise, --sensor, --noise-scale, --outliers, --no-reliability, --no-denial, --no-return
+/// and all of addReadOptions(). Both structs must outlive the parsing. Returns the options that a judgement
+/// made before answers already.
+std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& arguments,
+                                           ReconstructOptions& options);
+
+/// What of the arguments is not yet in the options. Throws InvalidArgument.
+void resolve(const SensorArguments& arguments, ReconstructOptions& options);
+
+/// A text that is a number and nothing else.
+std::optional<double> parseNumber(const std::string& text);
+
+enum class Words { Print, Keep };
+
+/// The data set without colour, cut to --views; its notes go to stderr.
+DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words);
+
+}  // namespace vdbfuse::tool
