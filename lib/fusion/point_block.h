@@ -17,7 +17,8 @@ namespace vdbfuse {
 struct PointBlock {
   static constexpr std::size_t kCapacity = 512;
 
-  explicit PointBlock(std::span<const Eigen::Vector3d> points) : size(points.size()), origin(points.front()) {
+  explicit PointBlock(std::span<const Eigen::Vector3d> points)
+      : size(points.size()), origin(points.front()), exact(points) {
     for (std::size_t i = 0; i < size; ++i) {
       const Eigen::Vector3d local = points[i] - origin;
       x[i] = static_cast<float>(local.x()), y[i] = static_cast<float>(local.y());
@@ -27,10 +28,11 @@ struct PointBlock {
     // Loops run over whole vectors.
     for (std::size_t i = size; i < kCapacity; ++i) x[i] = y[i] = z[i] = 0.0f;
   }
-  Eigen::Vector3d point(std::size_t i) const { return origin + Eigen::Vector3d(x[i], y[i], z[i]); }
+  const Eigen::Vector3d& point(std::size_t i) const { return exact[i]; }
 
   std::size_t size;
   Eigen::Vector3d origin;
+  std::span<const Eigen::Vector3d> exact;
   Box box;
   alignas(64) std::array<float, kCapacity> x, y, z;
 };

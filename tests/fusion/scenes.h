@@ -79,9 +79,7 @@ inline void addNoise(std::vector<View>& views, const NoiseLaw& law, std::uint64_
   }
 }
 
-inline SensorModel sphereSensor(double noise = 0.005) {
-  return {gaussianNoise(), {noise, 0, 0}, 1.3, 2.7};
-}
+inline SensorModel sphereSensor(double noise = 0.005) { return {gaussianNoise(), {noise, 0, 0}, 1.3, 2.7}; }
 
 inline std::vector<const ViewHeader*> headersOf(const std::vector<View>& views) {
   std::vector<const ViewHeader*> headers;

@@ -23,7 +23,8 @@ struct HoledScan {
     scan = test::smallScan(scene, options);
     for (std::size_t i = 0; i < scan.size(); ++i) {
       Random random(3, i);
-      for (int hole = 0; hole < 8; ++hole) cutDisc(random.uniform(32, 96), random.uniform(14.4, 81.6), scan[i]);
+      for (int hole = 0; hole < 8; ++hole)
+        cutDisc(random.uniform(32, 96), random.uniform(14.4, 81.6), scan[i]);
     }
   }
 

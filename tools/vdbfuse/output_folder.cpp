@@ -29,7 +29,7 @@ fs::path withoutTrailingSlash(const fs::path& path) {
 }  // namespace
 
 OutputFolder::OutputFolder(fs::path target, Existing existing) : target_(withoutTrailingSlash(target)) {
-  requireFree(target_, existing);
+  requireFree(target, existing);
   temporary_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(getpid()));
   std::error_code error;
   fs::create_directories(temporary_, error);
