@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
-#include "fusion/prepared_view.h"
+#include "fusion/block_kernels.h"
 #include "fusion/touched_leaves.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/sensor/view.h"
@@ -15,22 +16,33 @@ namespace {
 
 // Pixels less reliable than this make no leaves of their own: an outlier must not size the grid.
 constexpr float kMaxOutlierOfSeeds = 0.5f;
+constexpr float kLeastAlternativeOfSeeds = 0.2f;
 // The kernel is cut off at this many widths.
-constexpr double kKernelReach = 2.0;
+constexpr float kKernelReach = 2.0f;
 
-void addView(const PreparedView& prepared, const GridFrame& frame, const ScalarGrid::Leaf& leaf) {
+std::vector<Eigen::Vector3d> voxelsOf(const ScalarGrid::Leaf& leaf, const GridFrame& frame) {
+  std::vector<Eigen::Vector3d> points;
+  for (int k = 0; k < ScalarGrid::kLeafSize; ++k)
+    points.push_back(frame.toWorld(Index3(leaf.origin + leafOffset(k))));
+  return points;
+}
+
+void addView(const PreparedView& prepared, const PointBlock& block, double voxel, std::span<float> counts) {
+  if (!prepared.projector.mightSee(block.centre, block.radius)) return;
   const JudgedView& view = *prepared.view;
-  for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
-    const Index3 voxel = leaf.origin + leafOffset(k);
-    const std::optional<Sighting> seen = prepared.projector(frame.toWorld(voxel));
-    if (!seen) continue;
-    const float depth = view.depth(seen->x, seen->y);
-    if (depth == kInvalidDepth) continue;
-    const double width = std::max<double>(frame.voxel, prepared.noise.at(depth));
-    const double r = std::abs(depth - seen->depth) / width;
-    if (r > kKernelReach) continue;
-    leaf.values[static_cast<std::size_t>(k)] +=
-        static_cast<float>(view.weight * (1.0 - view.outlier(seen->x, seen->y)) * std::exp(-r * r));
+  const BlockLook seen = look(prepared, block);
+  for (std::size_t k = 0; k < block.size; ++k) {
+    if (seen.pixel[k] < 0) continue;
+    const std::size_t pixel = static_cast<std::size_t>(seen.pixel[k]);
+    if (view.depth.data()[pixel] == kInvalidDepth) continue;
+    float kernels = 0;
+    forEachHypothesis(prepared, pixel, [&](float depth, float share) {
+      const float width = std::max(static_cast<float>(voxel), prepared.noise.at(depth));
+      const float r = std::abs(depth - seen.depth[k]) / width;
+      if (r <= kKernelReach) kernels += share * std::exp(-r * r);
+    });
+    if (kernels > 0)
+      counts[k] += static_cast<float>(view.weight) * (1.0f - view.outlier.data()[pixel]) * kernels;
   }
 }
 
@@ -39,12 +51,14 @@ void addView(const PreparedView& prepared, const GridFrame& frame, const ScalarG
 ScalarGrid countAgreement(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
                           const Progress& progress) {
   const std::vector<PreparedView> views = prepare(judged);
-  const TouchOptions touch{kMaxOutlierOfSeeds,
+  const TouchOptions touch{kMaxOutlierOfSeeds, kLeastAlternativeOfSeeds,
                            [&](double noise) { return kKernelReach * std::max(frame.voxel, noise); }};
   ScalarGrid support("support", frame, 0.0f, touchedLeaves(views, frame, domain, touch, progress));
   ProgressStep step(progress, "count agreement", support.leafCount());
   support.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
-    for (const PreparedView& view : views) addView(view, frame, leaf);
+    const std::vector<Eigen::Vector3d> voxels = voxelsOf(leaf, frame);
+    const PointBlock block(voxels);
+    for (const PreparedView& view : views) addView(view, block, frame.voxel, leaf.values);
     step.advance();
   });
   support.metadata()["about"] = "C(x): number of reliable views that agree on a surface here";

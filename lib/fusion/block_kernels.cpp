@@ -132,6 +132,21 @@ void accumulateNodes(const VisibilityIntegral& integral, const BlockTestimony& t
   }
 }
 
+void logMeansOfNodes(const VisibilityIntegral& integral, const float* sums, std::size_t size, float* out) {
+  const hn::CappedTag<float, 8> d;
+  const std::size_t nodes = static_cast<std::size_t>(integral.nodeCount());
+  for (std::size_t i = 0; i < size; ++i, sums += nodes) {
+    auto largest = hn::LoadU(d, sums);
+    for (std::size_t k = hn::Lanes(d); k < nodes; k += hn::Lanes(d))
+      largest = hn::Max(largest, hn::LoadU(d, sums + k));
+    largest = hn::MaxOfLanes(d, largest);
+    auto sum = hn::Zero(d);
+    for (std::size_t k = 0; k < nodes; k += hn::Lanes(d))
+      sum = hn::Add(sum, hn::Exp(d, hn::Sub(hn::LoadU(d, sums + k), largest)));
+    out[i] = hn::GetLane(largest) + std::log(hn::GetLane(hn::SumOfLanes(d, sum)) / static_cast<float>(nodes));
+  }
+}
+
 const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace HWY_NAMESPACE
@@ -145,6 +160,7 @@ namespace {
 HWY_EXPORT(lookPinhole);
 HWY_EXPORT(testifySingle);
 HWY_EXPORT(accumulateNodes);
+HWY_EXPORT(logMeansOfNodes);
 HWY_EXPORT(targetName);
 
 // Any projection, a point at a time.
@@ -209,6 +225,15 @@ void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testim
   }
   for (std::size_t i = 0; i < size; ++i, sums += integral.nodeCount())
     if (testimony.measured[i] != 0) integral.add(testimony.log_ratio[i], weight, sums);
+}
+
+void logMeans(const VisibilityIntegral& integral, const float* sums, std::size_t size, float* out) {
+  if (integral.nodeCount() % 8 == 0) {
+    HWY_DYNAMIC_DISPATCH(logMeansOfNodes)(integral, sums, size, out);
+    return;
+  }
+  for (std::size_t i = 0; i < size; ++i, sums += integral.nodeCount())
+    out[i] = static_cast<float>(integral.logMean(sums));
 }
 
 const char* simdTarget() { return HWY_DYNAMIC_DISPATCH(targetName)(); }

@@ -21,6 +21,9 @@ BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, c
 void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,
                 std::size_t size, float* sums);
 
+/// out[i] = log of the mean over the nodes of e^sums: VisibilityIntegral::logMean() of each point.
+void logMeans(const VisibilityIntegral& integral, const float* sums, std::size_t size, float* out);
+
 /// Name of the instruction set in use.
 const char* simdTarget();
 

@@ -5,9 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "fusion/likelihood_ratio.h"
-#include "fusion/prepared_view.h"
-#include "fusion/visibility_integral.h"
+#include "fusion/block_kernels.h"
 #include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {
@@ -44,28 +42,37 @@ class TestimonyGrid {
     const std::size_t count = static_cast<std::size_t>(size_.prod());
     sums_.assign(count * kNodes, 0.0f);
     reports_.assign(count, 0.0f);
-    evidence_.assign(count, 0.0f);
+    without_.assign(count, 0.0f);
     ProgressStep progress_step(progress, "weigh views", count);
-    parallelFor(count, 2048, [&](std::size_t begin, std::size_t end) {
-      for (const PreparedView& view : views_) addView(view, begin, end);
-      for (std::size_t i = begin; i < end; ++i) evidence_[i] = combine(&sums_[i * kNodes], reports_[i]);
-      progress_step.advance(end - begin);
+    forEachBlock([&](std::size_t first, const PointBlock& block) {
+      for (const PreparedView& view : views_)
+        add(view, block, static_cast<float>(view.view->weight), &sums_[first * kNodes], &reports_[first]);
+      progress_step.advance(block.size);
     });
   }
 
-  // Smallest evidence of the other views along the ray of a pixel, from the sensor to `end` (world).
-  float smallestOnRay(std::size_t view, const Eigen::Vector3d& start, const Eigen::Vector3d& end,
-                      float outlier) const {
+  // From now on smallestOnRay() is about what all views but this one say.
+  void leaveOut(std::size_t view) {
+    forEachBlock([&](std::size_t first, const PointBlock& block) {
+      std::vector<float> sums(&sums_[first * kNodes], &sums_[first * kNodes] + block.size * kNodes);
+      std::vector<float> reports(&reports_[first], &reports_[first] + block.size);
+      add(views_[view], block, -kOwnWeight, sums.data(), reports.data());
+      float* const evidence = &without_[first];
+      logMeans(integral_, sums.data(), block.size, evidence);
+      for (std::size_t i = 0; i < block.size; ++i)
+        evidence[i] +=
+            static_cast<float>(std::min(kPriorOfOutside, integral_.halfDenial(std::max(reports[i], 0.0f))));
+    });
+  }
+
+  // Smallest evidence along the ray of a pixel, from the sensor to `end` (world).
+  float smallestOnRay(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const {
     const Eigen::Vector3d way = end - start;
     const double length = way.norm();
     const auto [first, last] = insideDomain(start, way);
     float smallest = kNobodyDenies;
-    for (double s = first * length; s <= last * length; s += step_) {
-      const std::size_t i = nearest(start + way * (s / length));
-      // A view's own claim only ever raises the evidence, by no more than its own log ratio.
-      if (evidence_[i] - ownBound(outlier) > smallest) continue;
-      smallest = std::min(smallest, withoutOwn(i, view));
-    }
+    for (double s = first * length; s <= last * length; s += step_)
+      smallest = std::min(smallest, without_[nearest(start + way * (s / length))]);
     return smallest;
   }
 
@@ -80,46 +87,25 @@ class TestimonyGrid {
     return static_cast<std::size_t>((cell.z() * size_.y() + cell.y()) * size_.x() + cell.x());
   }
 
-  void addView(const PreparedView& prepared, std::size_t begin, std::size_t end) {
-    const JudgedView& view = *prepared.view;
-    const float weight = static_cast<float>(view.weight);
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::optional<Sighting> seen = prepared.projector(point(i));
-      if (!seen) continue;
-      const float measured = view.depth(seen->x, seen->y);
-      if (measured == kInvalidDepth) continue;
-      const float ratio = ratio_.log(measured, prepared.noise.at(measured), view.outlier(seen->x, seen->y),
-                                     static_cast<float>(seen->depth));
-      integral_.add(ratio, weight, &sums_[i * kNodes]);
-      reports_[i] += weight;
-    }
+  // visit(index of its first point, block), in parallel; each block has one owner.
+  template <class Visit>
+  void forEachBlock(const Visit& visit) const {
+    parallelFor(static_cast<std::size_t>(size_.prod()), PointBlock::kCapacity,
+                [&](std::size_t begin, std::size_t end) {
+                  std::vector<Eigen::Vector3d> points;
+                  for (std::size_t i = begin; i < end; ++i) points.push_back(point(i));
+                  visit(begin, PointBlock(points));
+                });
   }
 
-  float combine(const float* sums, float reports) const {
-    return static_cast<float>(std::min(kPriorOfOutside, integral_.halfDenial(reports)) +
-                              integral_.logMean(sums));
-  }
-
-  static float ownBound(float outlier) { return 3.0f - std::log(outlier); }
-
-  float withoutOwn(std::size_t i, std::size_t index) const {
-    const PreparedView& prepared = views_[index];
-    std::array<float, kNodes> sums;
-    std::copy_n(&sums_[i * kNodes], kNodes, sums.begin());
-    float reports = reports_[i];
-    // What the sums hold is what the pixel at the grid point said, which may be a neighbour of the one
-    // examined.
-    if (const std::optional<Sighting> seen = prepared.projector(point(i))) {
-      const JudgedView& view = *prepared.view;
-      const float measured = view.depth(seen->x, seen->y);
-      if (measured != kInvalidDepth) {
-        const float ratio = ratio_.log(measured, prepared.noise.at(measured), view.outlier(seen->x, seen->y),
-                                       static_cast<float>(seen->depth));
-        integral_.add(ratio, -kOwnWeight, sums.data());
-        reports -= kOwnWeight;
-      }
-    }
-    return combine(sums.data(), std::max(reports, 0.0f));
+  // What the sums hold is what the pixel at the grid point said, which may be a neighbour of the one
+  // examined.
+  void add(const PreparedView& view, const PointBlock& block, float weight, float* sums,
+           float* reports) const {
+    if (!view.projector.mightSee(block.centre, block.radius)) return;
+    const BlockTestimony said = testify(view, ratio_, look(view, block), block.size);
+    accumulate(integral_, said, weight, block.size, sums);
+    for (std::size_t i = 0; i < block.size; ++i) reports[i] += weight * said.measured[i];
   }
 
   // Shares of the way at which it enters and leaves the grid, within [0, 1]; first > last when it misses it.
@@ -143,7 +129,7 @@ class TestimonyGrid {
   std::vector<PreparedView> views_;
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
-  std::vector<float> sums_, reports_, evidence_;
+  std::vector<float> sums_, reports_, without_;
 };
 
 void examineRow(const TestimonyGrid& grid, const JudgedViews& judged, std::size_t index, int y,
@@ -158,7 +144,7 @@ void examineRow(const TestimonyGrid& grid, const JudgedViews& judged, std::size_
     const Eigen::Vector3d start =
         view.world_from_camera * unproject(view.projection, x, y, judged.sensor.near);
     const Eigen::Vector3d end = view.world_from_camera * unproject(view.projection, x, y, claimed);
-    testimony(x, y).denial = denialBin(grid.smallestOnRay(index, start, end, view.outlier(x, y)));
+    testimony(x, y).denial = denialBin(grid.smallestOnRay(start, end));
   }
 }
 
@@ -170,6 +156,7 @@ void examineDenial(const JudgedViews& judged, const Box& domain, Testimonies& te
   grid.fill(progress);
   ProgressStep step(progress, "look for denial", judged.views.size());
   for (std::size_t i = 0; i < judged.views.size(); ++i) {
+    grid.leaveOut(i);
     parallelFor(static_cast<std::size_t>(judged.views[i].depth.height()), 16,
                 [&](std::size_t begin, std::size_t end) {
                   for (std::size_t y = begin; y < end; ++y)

@@ -80,7 +80,8 @@ Split splitWithoutConfidence() {
 std::vector<double> countOutcomes(const Testimonies& testimonies,
                                   const std::vector<Image<std::uint8_t>>& confidence) {
   std::vector<double> counts(kOutcomes, 0.0);
-  for (std::size_t i = 0; i < testimonies.views.size(); ++i) {
+  // Views beyond the confidences hold alternative depths: what is learned is of what was measured.
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
     const Image<T>& view = testimonies.views[i];
     for (std::size_t p = 0; p < view.size(); ++p) {
       if (!view.data()[p].measured) continue;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/fusion/pixel_surface.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "vdbfuse/base/parallel.h"
@@ -17,50 +18,65 @@ constexpr double kSteepestSlope = 2.75;  // tan 70°
 
 // Sums of the least-squares plane w = a + b·dx + c·dy in inverse depth.
 struct PlaneSums {
-  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  int count = 0;
+  int count = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+  double w = 0, xw = 0, yw = 0;
   int valid = 0;  // neighbours with a depth, whether they continue the surface or not
+
   void add(int dx, int dy, double inverse_depth) {
-    const Eigen::Vector3d row(1, dx, dy);
-    normal_matrix += row * row.transpose();
-    right_side += inverse_depth * row;
-    ++count;
+    ++count, x += dx, y += dy, xx += dx * dx, xy += dx * dy, yy += dy * dy;
+    w += inverse_depth, xw += dx * inverse_depth, yw += dy * inverse_depth;
+  }
+  // (a, b, c); nothing when the pixels lie on a line.
+  std::optional<Eigen::Vector3d> solve() const {
+    const double n = count,
+                 determinant = n * (xx * yy - xy * xy) - x * (x * yy - xy * y) + y * (x * xy - xx * y);
+    if (determinant == 0) return std::nullopt;
+    const double aa = xx * yy - xy * xy, ab = y * xy - x * yy, ac = x * xy - y * xx;
+    const double bb = n * yy - y * y, bc = x * y - n * xy, cc = n * xx - x * x;
+    return Eigen::Vector3d(aa * w + ab * xw + ac * yw, ab * w + bb * xw + bc * yw,
+                           ac * w + bc * xw + cc * yw) /
+           determinant;
   }
 };
 
 class SurfaceAnalysis {
  public:
   SurfaceAnalysis(const View& view, const NoiseLaw& noise)
-      : view_(view), noise_(noise), depth_(view.map.depth) {}
+      : view_(view), noise_(noise), depth_(view.map.depth), inverse_(depth_.width(), depth_.height()) {
+    std::transform(depth_.begin(), depth_.end(), inverse_.begin(),
+                   [](float d) { return d > 0 ? 1.0f / d : 0.0f; });
+  }
 
   void analyse(int x, int y, PixelSurface& out) const {
     const float d = depth_(x, y);
     if (d == kInvalidDepth) return;
     PlaneSums sums;
-    sums.add(0, 0, 1.0 / d);
+    sums.add(0, 0, inverse_(x, y));
     gather(x, y, sums);
     const int neighbours = sums.count - 1;
     out.continuity(x, y) =
         static_cast<float>(neighbours) / static_cast<float>(std::max(sums.valid, kMinNeighbours));
     if (neighbours < kMinNeighbours) return;
-    const Eigen::Vector3d plane = sums.normal_matrix.ldlt().solve(sums.right_side);
-    if (const auto normal = cameraNormal(x, y, plane)) setNormal(x, y, *normal, out);
+    const auto plane = sums.solve();
+    if (!plane) return;
+    if (const auto normal = cameraNormal(x, y, *plane)) setNormal(x, y, *normal, out);
   }
 
  private:
   void gather(int x, int y, PlaneSums& sums) const {
-    const double d = depth_(x, y);
-    const double noise = 3.0 * std::numbers::sqrt2 * noise_.at(d);
-    const double slope = kSteepestSlope * footprint(view_.projection, d);
-    for (int dy = -kRadius; dy <= kRadius; ++dy) {
-      for (int dx = -kRadius; dx <= kRadius; ++dx) {
-        if ((dx == 0 && dy == 0) || !depth_.contains(x + dx, y + dy)) continue;
-        const float other = depth_(x + dx, y + dy);
-        const double reach = noise + slope * std::max(std::abs(dx), std::abs(dy));
-        if (other == kInvalidDepth) continue;
+    const float d = depth_(x, y);
+    const float noise = static_cast<float>(3.0 * std::numbers::sqrt2 * noise_.at(d));
+    const float slope = static_cast<float>(kSteepestSlope * footprint(view_.projection, d));
+    const int left = std::max(0, x - kRadius), right = std::min(depth_.width() - 1, x + kRadius);
+    const int top = std::max(0, y - kRadius), bottom = std::min(depth_.height() - 1, y + kRadius);
+    for (int v = top; v <= bottom; ++v) {
+      for (int u = left; u <= right; ++u) {
+        const float other = depth_(u, v);
+        const int dx = u - x, dy = v - y, steps = std::max(std::abs(dx), std::abs(dy));
+        if (other == kInvalidDepth || steps == 0) continue;
         ++sums.valid;
-        if (std::abs(other - d) <= reach) sums.add(dx, dy, 1.0 / other);
+        if (std::abs(other - d) <= noise + slope * static_cast<float>(steps))
+          sums.add(dx, dy, inverse_(u, v));
       }
     }
   }
@@ -88,6 +104,7 @@ class SurfaceAnalysis {
   const View& view_;
   const NoiseLaw& noise_;
   const Image<float>& depth_;
+  Image<float> inverse_;
 };
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fusion/prepared_view.h"
 #include "vdbfuse/base/parallel.h"
-#include "vdbfuse/geometry/projector.h"
 #include "vdbfuse/sensor/judged_view.h"
 
 namespace vdbfuse {
@@ -27,10 +27,17 @@ struct MissCounts {
 class Hearing {
  public:
   Hearing(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
-          const SensorModel& sensor, std::size_t index, const std::vector<std::size_t>& neighbours)
-      : views_(views), surfaces_(surfaces), sensor_(sensor), index_(index), neighbours_(neighbours) {
+          const SensorModel& sensor, std::size_t index, const std::vector<std::size_t>& neighbours,
+          const std::vector<std::vector<std::size_t>>& alternatives)
+      : views_(views),
+        surfaces_(surfaces),
+        sensor_(sensor),
+        index_(index),
+        neighbours_(neighbours),
+        alternatives_(alternatives) {
     for (const std::size_t other : neighbours) {
       projectors_.emplace_back(views[other].projection, views[other].world_from_camera);
+      noise_.emplace_back(sensor, views[other].projection);
     }
   }
 
@@ -70,14 +77,25 @@ class Hearing {
   Answer ask(std::size_t k, const Eigen::Vector3d& point, double noise, const Eigen::Vector3f& normal) const {
     const std::optional<Sighting> seen = projectors_[k](point);
     if (!seen) return Answer::Nothing;
-    const View& other = views_[neighbours_[k]];
-    if (isOutsideMask(other.map, seen->x, seen->y)) return Answer::SeesPast;
-    const float measured = other.map.depth(seen->x, seen->y);
+    if (isOutsideMask(views_[neighbours_[k]].map, seen->x, seen->y)) return Answer::SeesPast;
+    const Answer answer = compare(k, neighbours_[k], *seen, noise, normal);
+    if (answer == Answer::Agrees || neighbours_[k] >= alternatives_.size()) return answer;
+    for (const std::size_t layer : alternatives_[neighbours_[k]]) {
+      if (compare(k, layer, *seen, noise, normal) == Answer::Agrees) return Answer::Agrees;
+    }
+    return answer;
+  }
+
+  // What view `index`, neighbour k or an alternative of it, measured where it saw the point.
+  Answer compare(std::size_t k, std::size_t index, const Sighting& seen, double noise,
+                 const Eigen::Vector3f& normal) const {
+    const View& other = views_[index];
+    const float measured = other.map.depth(seen.x, seen.y);
     if (measured == kInvalidDepth) return Answer::Missed;
-    const double reach = kAgreeSigmas * std::hypot(noise, lookupNoise(sensor_, other.projection, measured));
-    if (measured - seen->depth > reach) return Answer::SeesPast;
-    if (measured - seen->depth < -reach) return Answer::Nothing;
-    const Eigen::Vector3f other_normal = surfaces_[neighbours_[k]].normal(seen->x, seen->y);
+    const double further = measured - seen.depth, other_noise = noise_[k].at(measured);
+    if (further * further > kAgreeSigmas * kAgreeSigmas * (noise * noise + other_noise * other_noise))
+      return further > 0 ? Answer::SeesPast : Answer::Nothing;
+    const Eigen::Vector3f other_normal = surfaces_[index].normal(seen.x, seen.y);
     if (normal.isZero() || other_normal.isZero()) return Answer::Agrees;
     return normal.dot(other_normal) >= kAgreeCosine ? Answer::Agrees : Answer::Nothing;
   }
@@ -87,20 +105,23 @@ class Hearing {
   const SensorModel& sensor_;
   std::size_t index_;
   const std::vector<std::size_t>& neighbours_;
+  const std::vector<std::vector<std::size_t>>& alternatives_;
   std::vector<Projector> projectors_;
+  std::vector<NoiseTable> noise_;
 };
 
 }  // namespace
 
 Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
                            const SensorModel& sensor, const std::vector<std::vector<std::size_t>>& neighbours,
+                           const std::vector<std::vector<std::size_t>>& alternatives,
                            const Progress& progress) {
   Testimonies result;
   result.views.resize(views.size());
   std::vector<MissCounts> misses(views.size());
   ProgressStep step(progress, "judge pixels", views.size());
   parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
-    result.views[i] = Hearing(views, surfaces, sensor, i, neighbours[i]).hear(misses[i]);
+    result.views[i] = Hearing(views, surfaces, sensor, i, neighbours[i], alternatives).hear(misses[i]);
     step.advance();
   });
   MissCounts sum;

@@ -33,9 +33,11 @@ struct Testimonies {
 /// Asks the neighbours of each view. A neighbour agrees when its depth at the projected point is within 3
 /// combined standard deviations and its normal within 45° (a missing normal vetoes nothing); it contradicts
 /// when it measured something further away than that, or its mask says that the point is not of the object.
-/// One that sees something nearer says nothing.
+/// One that sees something nearer says nothing. `alternatives`: for each neighbour other views that hold
+/// further hypotheses of its pixels; it agrees when any of them does. Views beyond its end have none.
 Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
                            const SensorModel& sensor, const std::vector<std::vector<std::size_t>>& neighbours,
+                           const std::vector<std::vector<std::size_t>>& alternatives,
                            const Progress& progress);
 
 }  // namespace vdbfuse

@@ -19,12 +19,15 @@ struct PointBlock {
 
   explicit PointBlock(std::span<const Eigen::Vector3d> points)
       : size(points.size()), origin(points.front()), exact(points) {
+    Box box;
     for (std::size_t i = 0; i < size; ++i) {
       const Eigen::Vector3d local = points[i] - origin;
       x[i] = static_cast<float>(local.x()), y[i] = static_cast<float>(local.y());
       z[i] = static_cast<float>(local.z());
       box.extend(points[i]);
     }
+    centre = box.center();
+    radius = 0.5 * box.diagonal().norm() * (1 + 1e-9);
     // Loops run over whole vectors.
     for (std::size_t i = size; i < kCapacity; ++i) x[i] = y[i] = z[i] = 0.0f;
   }
@@ -33,7 +36,8 @@ struct PointBlock {
   std::size_t size;
   Eigen::Vector3d origin;
   std::span<const Eigen::Vector3d> exact;
-  Box box;
+  Eigen::Vector3d centre;  ///< of a ball that holds all points
+  double radius;
   alignas(64) std::array<float, kCapacity> x, y, z;
 };
 

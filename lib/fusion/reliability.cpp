@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "fusion/alternatives.h"
 #include "fusion/denial.h"
 #include "fusion/learn_reliability.h"
 #include "fusion/pixel_testimony.h"
@@ -100,11 +101,14 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
                 const JudgeOptions& options, const Progress& progress) {
   const std::size_t count = views.size();
   for (View& view : views) applyMask(view.map);
-  std::vector<PixelSurface> surfaces = analyseAll(views, sensor.noise, progress);
-  Testimonies testimonies =
-      hearNeighbours(views, surfaces, sensor, chooseNeighbours(graph, count, options.neighbours), progress);
   const ConfidenceBins bins(views);
   const std::vector<Image<std::uint8_t>> confidence = bins.binAll(views);
+  std::vector<std::vector<std::size_t>> neighbours = chooseNeighbours(graph, count, options.neighbours);
+  const AlternativeViews alternatives(views);
+  alternatives.extend(neighbours);
+  std::vector<PixelSurface> surfaces = analyseAll(views, sensor.noise, progress);
+  Testimonies testimonies = hearNeighbours(views, surfaces, sensor, neighbours, alternatives.of(), progress);
+  alternatives.restore(views);
   ReliabilityTable table = learn(testimonies, confidence, bins);
 
   const std::vector<std::size_t> unmasked = viewsWithoutMask(views);
@@ -127,6 +131,8 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     table = learn(testimonies, confidence, bins);
     setOutliers(testimonies, confidence, table, judged.views);
   }
+  for (std::size_t i = 0; i < count; ++i)
+    weighAlternatives(alternatives, i, testimonies, confidence[i], table, surfaces, judged.views[i]);
   result.model = modelOf(table, bins);
   return result;
 }

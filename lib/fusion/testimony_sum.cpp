@@ -58,6 +58,7 @@ TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const Ev
 
 void TestimonySum::add(const PreparedView& view, const PointBlock& block, float weight,
                        const TestimonySums& sums) const {
+  if (!view.projector.mightSee(block.centre, block.radius)) return;
   switch (options_.rule) {
     case EvidenceRule::Outside:
       return addOutside(view, block, weight, sums);
@@ -117,16 +118,20 @@ void TestimonySum::addNoSelfOcclusion(const PreparedView& prepared, const PointB
   }
 }
 
-float TestimonySum::outside(const TestimonySums& sums, std::size_t point) const {
-  const float* nodes = &sums.nodes[point * nodeCount()];
-  std::vector<float> with(nodes, nodes + nodeCount());
-  const float empties = std::min(sums.empties[point], static_cast<float>(options_.max_no_returns));
-  if (empties > 0) integral_.add(no_return_, empties, with.data());
-  const float masked = sums.masked[point], unconfirmed = std::min(masked, kUnconfirmedMasks);
-  if (masked > 0) integral_.add(std::min(mask_, kUnconfirmedMask), unconfirmed, with.data());
-  if (masked > unconfirmed) integral_.add(mask_, masked - unconfirmed, with.data());
-  return static_cast<float>(std::min(options_.prior, integral_.halfDenial(sums.reports[point])) +
-                            integral_.logMean(with.data()));
+void TestimonySum::finishOutside(const TestimonySums& sums, float* evidence) const {
+  const std::size_t count = sums.reports.size();
+  std::vector<float> nodes(sums.nodes.begin(), sums.nodes.end());
+  for (std::size_t i = 0; i < count; ++i) {
+    float* const node = &nodes[i * nodeCount()];
+    const float empties = std::min(sums.empties[i], static_cast<float>(options_.max_no_returns));
+    if (empties > 0) integral_.add(no_return_, empties, node);
+    const float masked = sums.masked[i], unconfirmed = std::min(masked, kUnconfirmedMasks);
+    if (masked > 0) integral_.add(std::min(mask_, kUnconfirmedMask), unconfirmed, node);
+    if (masked > unconfirmed) integral_.add(mask_, masked - unconfirmed, node);
+  }
+  logMeans(integral_, nodes.data(), count, evidence);
+  for (std::size_t i = 0; i < count; ++i)
+    evidence[i] += static_cast<float>(std::min(options_.prior, integral_.halfDenial(sums.reports[i])));
 }
 
 // Without self-occlusion a view that leaves the point out counts with its whole ratio, but for the first one.
@@ -136,24 +141,23 @@ float TestimonySum::maskTerm(float masked) const {
 }
 
 void TestimonySum::finish(const TestimonySums& sums, float* evidence) const {
-  for (std::size_t i = 0; i < sums.reports.size(); ++i) {
-    const float* nodes = &sums.nodes[i * nodeCount()];
-    switch (options_.rule) {
-      case EvidenceRule::Outside:
-        evidence[i] = outside(sums, i);
-        break;
-      case EvidenceRule::Paper:
-        evidence[i] = sums.reports[i] > 0.5f
-                          ? static_cast<float>(std::log(-std::expm1(static_cast<double>(*nodes)))) - *nodes
-                          : static_cast<float>(options_.prior);
-        break;
-      case EvidenceRule::NoSelfOcclusion:
-        evidence[i] = *nodes + maskTerm(sums.masked[i]);
-        break;
-      case EvidenceRule::Constant:
-        evidence[i] = static_cast<float>(-options_.balloon);
-        break;
-    }
+  const std::size_t count = sums.reports.size();
+  switch (options_.rule) {
+    case EvidenceRule::Outside:
+      return finishOutside(sums, evidence);
+    case EvidenceRule::Paper:
+      for (std::size_t i = 0; i < count; ++i) {
+        const double hidden = static_cast<double>(sums.nodes[i]);
+        evidence[i] = static_cast<float>(sums.reports[i] > 0.5f ? std::log(-std::expm1(hidden)) - hidden
+                                                                : options_.prior);
+      }
+      return;
+    case EvidenceRule::NoSelfOcclusion:
+      for (std::size_t i = 0; i < count; ++i) evidence[i] = sums.nodes[i] + maskTerm(sums.masked[i]);
+      return;
+    case EvidenceRule::Constant:
+      std::fill_n(evidence, count, static_cast<float>(-options_.balloon));
+      return;
   }
 }
 

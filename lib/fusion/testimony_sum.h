@@ -42,7 +42,7 @@ class TestimonySum {
                 const TestimonySums& sums) const;
   void addNoSelfOcclusion(const PreparedView& view, const PointBlock& block, float weight,
                           const TestimonySums& sums) const;
-  float outside(const TestimonySums& sums, std::size_t point) const;
+  void finishOutside(const TestimonySums& sums, float* evidence) const;
   float maskTerm(float masked) const;
 
   EvidenceOptions options_;

@@ -13,6 +13,8 @@ namespace vdbfuse {
 
 struct TouchOptions {
   float max_outlier = 1.0f;  ///< less reliable pixels touch nothing
+  /// Alternative depths touch leaves when they are right with this probability or more; above 1: never.
+  float least_alternative = 2.0f;
   /// How far around a point of the given noise scale leaves are touched, length.
   std::function<double(double noise)> reach;
 };

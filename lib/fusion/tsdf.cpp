@@ -33,7 +33,7 @@ TsdfVolume integrateTsdf(const JudgedViews& judged, const GridFrame& frame, cons
                          const TsdfOptions& options, const Progress& progress) {
   if (!(options.truncation > 0)) throw InvalidArgument("truncation", "must be positive");
   const std::vector<PreparedView> views = prepare(judged);
-  const TouchOptions touch{1.0f, [&](double) { return options.truncation; }};
+  const TouchOptions touch{1.0f, 2.0f, [&](double) { return options.truncation; }};
   const std::vector<Index3> leaves = touchedLeaves(views, frame, domain, touch, progress);
   TsdfVolume volume{ScalarGrid("surface", frame, kUnknown, leaves),
                     ScalarGrid("weight", frame, 0.0f, leaves)};

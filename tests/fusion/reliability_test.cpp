@@ -174,7 +174,7 @@ TEST(Judge, NeighboursContradictAPointOutsideTheirMasks) {
   for (const View& view : views) surfaces.push_back(analyseSurface(view, test::sphereSensor().noise));
   const auto neighbours = chooseNeighbours(ViewGraph(test::headersOf(views), 1.7), views.size());
   const auto hear = [&] {
-    return hearNeighbours(views, surfaces, test::sphereSensor(), neighbours, {}).views[0](32, 32);
+    return hearNeighbours(views, surfaces, test::sphereSensor(), neighbours, {}, {}).views[0](32, 32);
   };
   EXPECT_EQ(hear().contradiction, 0);
   EXPECT_GT(hear().agreement, 0);

@@ -34,7 +34,23 @@ class Projector {
         width_(imageWidth(projection)),
         height_(imageHeight(projection)) {
     const Pinhole* pinhole = std::get_if<Pinhole>(&projection);
-    if (pinhole != nullptr && !isDistorted(*pinhole)) pinhole_ = *pinhole;
+    if (pinhole == nullptr || isDistorted(*pinhole)) return;
+    pinhole_ = *pinhole;
+    const Pinhole& c = *pinhole;
+    sides_ = {Eigen::Vector3d(c.fx, 0, c.cx + 0.5), Eigen::Vector3d(-c.fx, 0, width_ - 0.5 - c.cx),
+              Eigen::Vector3d(0, c.fy, c.cy + 0.5), Eigen::Vector3d(0, -c.fy, height_ - 0.5 - c.cy)};
+    for (Eigen::Vector3d& side : sides_) side.normalize();
+  }
+
+  /// False only when no point of a ball can be seen. An undistorted pinhole tests its frustum, others say
+  /// true.
+  bool mightSee(const Eigen::Vector3d& centre, double radius) const {
+    if (!pinhole_) return true;
+    const Eigen::Vector3d p = rotation_ * centre + translation_;
+    if (p.z() < -radius) return false;
+    for (const Eigen::Vector3d& side : sides_)
+      if (side.dot(p) < -radius) return false;
+    return true;
   }
 
   /// Nothing when the point lies behind the sensor or outside its image.
@@ -77,6 +93,7 @@ class Projector {
 
   Projection projection_;
   std::optional<Pinhole> pinhole_;
+  std::array<Eigen::Vector3d, 4> sides_;  ///< of the frustum, unit normals inwards, camera coordinates
   Eigen::Matrix3d rotation_;
   Eigen::Vector3d translation_;
   int width_, height_;
