@@ -35,8 +35,4 @@ struct ViewStatistics {
 };
 ViewStatistics statistics(const JudgedView& view);
 
-const char* nameOf(ConfidenceDirection direction);
-/// "constant", "linear", "quadratic", or "given" for −1.
-const char* nameOfLaw(int exponent);
-
 }  // namespace vdbfuse

@@ -28,25 +28,6 @@ const char* nameOf(Border border) {
 
 const char* nameOf(Method method) { return method == Method::Visibility ? "visibility" : "tsdf"; }
 
-const char* nameOf(ConfidenceDirection direction) {
-  switch (direction) {
-    case ConfidenceDirection::None:
-      return "none";
-    case ConfidenceDirection::HighIsGood:
-      return "high is good";
-    case ConfidenceDirection::HighIsBad:
-      return "high is bad";
-    case ConfidenceDirection::Uninformative:
-      return "uninformative";
-  }
-  return "";
-}
-
-const char* lawName(int exponent) {
-  if (exponent < 0) return "given";
-  return exponent == 0 ? "constant" : exponent == 1 ? "linear" : "quadratic";
-}
-
 Json json(const Box& box) {
   return {box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()};
 }
@@ -73,7 +54,7 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
 
 Json calibrationJson(const CalibrationReport& c) {
   return {{"noise_scale", c.noise_scale},
-          {"noise_law", lawName(c.noise_exponent)},
+          {"noise_law", nameOfLaw(c.noise_exponent)},
           {"median_depth", c.median_depth},
           {"point_spacing", c.point_spacing},
           {"near", c.near},
@@ -150,7 +131,7 @@ void printFuseReport(const Reconstruction& result, const FuseContext& context,
               result.mesh.vertices.size(), result.mesh.triangles.size(), t.components,
               t.components == 1 ? "" : "s", t.open_edges);
   std::printf("voxel %.4g, noise %.3g at depth %.3g (%s), outliers %.1f %%, confidence: %s\n",
-              result.grid.voxel, c.noise_scale, c.median_depth, lawName(c.noise_exponent),
+              result.grid.voxel, c.noise_scale, c.median_depth, nameOfLaw(c.noise_exponent),
               100 * c.outlier_share, nameOf(c.confidence));
   if (result.cut) {
     std::printf("%zu cells, flow %lld%s, border %s, %.0f %% of the area invented\n", result.grid.cells,

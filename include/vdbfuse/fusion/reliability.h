@@ -46,17 +46,17 @@ struct JudgeOptions {
   std::optional<Box> domain;
 };
 
-/// Two-class EM (inlier, outlier) over observations that are independent given the class; histograms, no
-/// parametric form:
-///  1. the confidence (20 quantile bins), and a cell of *agreement* (neighbour views that measured the same
-///  point, with
-///     normals within 45°), *contradiction* (neighbours that see past it) and *continuity* (share of the 5×5
-///     neighbourhood on the same surface). Without confidence, or where it turns out to say nothing,
-///     continuity is an observation of its own.
-///  2. *denial*: the smallest evidence of all other views where the pixel claims free space.
-/// Starts from: two or more agree and the surface continues = inlier; contradicted by more than agree =
-/// outlier; nobody speaks for or against = undecided, because only evidence against condemns. Takes the
-/// views' images over. `sensor`: its noise and range. Throws InvalidArgument when nothing is supported.
+/// Two-class EM (inlier, outlier) over observations that are independent given the class, histograms, no
+/// parametric form: the confidence (20 quantile bins), and a cell of *agreement* (neighbour views that
+/// measured the same point, with normals within 45°), *contradiction* (neighbours that see past it) and
+/// *continuity* (share of the 5×5 neighbourhood on the same surface). Without confidence, or where it turns
+/// out to say nothing, continuity is an observation of its own.
+/// Then one step of Bayes' rule, outside the EM, with *denial*: the smallest evidence of all other views
+/// where the pixel claims free space. Alternative depths are judged as if they were views of their own,
+/// without denial, and compete; the likeliest becomes the depth. Starts from: two or more agree and the
+/// surface continues = inlier; contradicted by more than agree = outlier; nobody speaks for or against =
+/// undecided, because only evidence against condemns. Takes the views' images over. `sensor`: its noise and
+/// range. Throws InvalidArgument when nothing is supported.
 Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
                 const JudgeOptions& options = {}, const Progress& progress = {});
 

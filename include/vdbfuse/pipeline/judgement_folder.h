@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A judgement on disk, to look at and to hand to another run:
 //
-//   NAME.png             8-bit grey, 255 × (1 − ε): white is a certain inlier, black an outlier or no
-//   measurement outliers/NAME.png    16-bit grey, the same to 0.03 % of ε, and what pixels without a depth
-//   say judgement.json       sensor, calibration, the learned curve ε(c), weights of the views judgement.txt
-//   the same for reading
+// - NAME.png: 8-bit grey, 255 × (1 − ε): white is a certain inlier, black an outlier or no measurement.
+// - outliers/NAME.png: 16-bit grey, the same to 0.03 % of ε, and what pixels without a depth say.
+// - judgement.json: sensor, calibration, the learned curve ε(c), weights of the views.
+// - judgement.txt: the same for reading.
 #pragma once
 
 #include <filesystem>

@@ -71,6 +71,11 @@ struct CalibrationReport {
   ConfidenceDirection confidence = ConfidenceDirection::None;
 };
 
+/// "none", "high is good", "high is bad" or "uninformative".
+const char* nameOf(ConfidenceDirection direction);
+/// Of CalibrationReport::noise_exponent: "constant", "linear", "quadratic", or "given" for −1.
+const char* nameOfLaw(int exponent);
+
 struct GridReport {
   double voxel = 0;
   Box domain;
