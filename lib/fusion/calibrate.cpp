@@ -184,13 +184,17 @@ NoiseLaw powerLaw(double scale, int exponent, double typical) {
 
 }  // namespace
 
-DepthStatistics depthStatistics(const std::vector<View>& views) {
-  std::vector<double> depths;
+DepthStatistics depthStatistics(const std::vector<View>& views, const std::optional<Box>& domain) {
+  std::vector<double> depths, inside;
   for (const View& view : views) {
-    visitSample(view.map.depth, [&](int x, int y) { depths.push_back(view.map.depth(x, y)); });
+    visitSample(view.map.depth, [&](int x, int y) {
+      depths.push_back(view.map.depth(x, y));
+      if (domain && domain->contains(worldPoint(view, x, y))) inside.push_back(depths.back());
+    });
   }
   if (depths.empty()) throw InvalidArgument("views", "no view has a valid depth");
-  return {0.97 * quantile(depths, 0.002), quantile(depths, 0.5), 1.03 * quantile(depths, 0.998)};
+  const double median = quantile(inside.empty() ? depths : inside, 0.5);
+  return {0.97 * quantile(depths, 0.002), median, 1.03 * quantile(depths, 0.998)};
 }
 
 NoiseLaw guessNoise(const std::vector<View>& views, double typical_depth) {

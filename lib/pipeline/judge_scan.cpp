@@ -17,7 +17,7 @@ JudgedScan judgeScan(const ViewSequence& sequence, const ReconstructOptions& opt
   scan.height = static_cast<std::size_t>(views.front().map.depth.height());
 
   timer.start("calibrate");
-  const DepthStatistics depths = depthStatistics(views);
+  const DepthStatistics depths = depthStatistics(views, options.domain);
   const ViewGraph graph = makeGraph(views, depths);
   const SensorModel sensor = calibrateSensor(views, graph, depths, options, scan.calibration, progress);
 

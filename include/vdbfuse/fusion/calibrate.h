@@ -7,6 +7,7 @@
 
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/fusion/view_graph.h"
+#include "vdbfuse/geometry/box.h"
 #include "vdbfuse/sensor/noise_model.h"
 #include "vdbfuse/sensor/view.h"
 
@@ -14,13 +15,15 @@ namespace vdbfuse {
 
 /// Depths of a data set, from a sample of the pixels of every view.
 struct DepthStatistics {
-  double near = 0;  ///< 0.97 × the 0.2 % quantile
-  double median = 0;
-  double far = 0;  ///< 1.03 × the 99.8 % quantile
+  double near = 0;    ///< 0.97 × the 0.2 % quantile
+  double median = 0;  ///< of what lies in the domain
+  double far = 0;     ///< 1.03 × the 99.8 % quantile
 };
 
-/// Throws InvalidArgument when no view has a valid pixel.
-DepthStatistics depthStatistics(const std::vector<View>& views);
+/// Where `domain` is given and holds any point, the median is of the points inside it: a wall behind the
+/// object says nothing of how far away the object is. Throws InvalidArgument when no view has a valid pixel.
+DepthStatistics depthStatistics(const std::vector<View>& views,
+                                const std::optional<Box>& domain = std::nullopt);
 
 /// Noise of neighbouring pixels against each other, from second differences: a first guess that knows nothing
 /// of poses. Proportional to the pixel footprint.

@@ -63,7 +63,7 @@ std::vector<std::string> validate(const ReconstructOptions& options);
 struct CalibrationReport {
   double noise_scale = 0;  ///< at the median depth
   int noise_exponent = 0;  ///< of depth: 0, 1 or 2; −1: the law was given
-  double median_depth = 0;
+  double median_depth = 0;  ///< of what lies in the domain, where one was given
   double point_spacing = 0;  ///< distance of neighbouring measurements in the world
   double miss_rate = 0;
   double outlier_share = 0;
