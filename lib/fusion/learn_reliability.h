@@ -31,14 +31,15 @@ class ReliabilityTable {
 
  private:
   void describe(const std::vector<double>& counts);
-  friend ReliabilityTable learnReliability(const Testimonies&, const std::vector<Image<std::uint8_t>>&, bool);
+  friend ReliabilityTable learnReliability(const Testimonies&, const std::vector<Image<std::uint8_t>>&);
   double outlier_share_ = 0;
   std::array<double, ReliabilityModel::kConfidences> by_confidence_{};
   std::vector<double> table_;
 };
 
-/// EM over all measured pixels. `confidence`: bins, used when `has_confidence`.
+/// EM over all measured pixels. `confidence`: bins, empty images without one. A confidence that says nothing
+/// has the same histogram in both classes, and does no harm.
 ReliabilityTable learnReliability(const Testimonies& testimonies,
-                                  const std::vector<Image<std::uint8_t>>& confidence, bool has_confidence);
+                                  const std::vector<Image<std::uint8_t>>& confidence);
 
 }  // namespace vdbfuse

@@ -43,14 +43,6 @@ ReliabilityModel modelOf(const ReliabilityTable& table, const ConfidenceBins& bi
   return {table.outlierShare(), bins.ends(), table.byConfidence()};
 }
 
-// A confidence that says nothing is left aside, so that continuity can be an observation of its own.
-ReliabilityTable learn(const Testimonies& testimonies, const std::vector<Image<std::uint8_t>>& confidence,
-                       const ConfidenceBins& bins) {
-  ReliabilityTable table = learnReliability(testimonies, confidence, bins.informative());
-  if (confidenceDirection(modelOf(table, bins)) != ConfidenceDirection::Uninformative) return table;
-  return learnReliability(testimonies, confidence, false);
-}
-
 // Empty space around an object shows as a no-return along most of the border of most images; a room does not.
 bool trustNoReturn(const std::vector<Image<std::uint8_t>>& empty, JudgeOptions::NoReturn rule) {
   constexpr double kMostOfTheBorder = 0.5;
@@ -109,7 +101,7 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
   std::vector<PixelSurface> surfaces = analyseAll(views, sensor.noise, progress);
   Testimonies testimonies = hearNeighbours(views, surfaces, sensor, neighbours, alternatives.of(), progress);
   alternatives.restore(views);
-  ReliabilityTable table = learn(testimonies, confidence, bins);
+  ReliabilityTable table = learnReliability(testimonies, confidence);
 
   const std::vector<std::size_t> unmasked = viewsWithoutMask(views);
 
@@ -128,7 +120,7 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
 
   if (options.denial == JudgeOptions::Denial::Examine) {
     examineDenial(judged, result.domain, testimonies, progress);
-    table = learn(testimonies, confidence, bins);
+    table = learnReliability(testimonies, confidence);
     setOutliers(testimonies, confidence, table, judged.views);
   }
   for (std::size_t i = 0; i < count; ++i)
