@@ -72,8 +72,15 @@ class Table {
   float first_, per_step_, last_;
 };
 
-void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, const BlockLook& look,
-                   std::size_t size, BlockTestimony& testimony) {
+// e^(−(δ/τ)²) behind, 1 before.
+FloatVec nearness(FloatVec behind, FloatVec per_thickness) {
+  const Floats df;
+  const FloatVec far = hn::Mul(hn::Max(behind, hn::Zero(df)), per_thickness);
+  return hn::Exp(df, hn::Neg(hn::Mul(far, far)));
+}
+
+void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
+                   const BlockLook& look, std::size_t size, BlockTestimony& testimony) {
   const Floats df;
   const Ints di;
   const float* depths = view.view->depth.data();
@@ -85,6 +92,7 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, const
   const FloatVec first = hn::Set(df, ratio.clampDepth(ratio.near())),
                  last = hn::Set(df, ratio.clampDepth(ratio.far()));
   const FloatVec one = hn::Set(df, 1.0f), zero = hn::Zero(df), reach = hn::Set(df, kReach);
+  const FloatVec per_thickness = hn::Set(df, thickness > 0 ? 1 / thickness : 0.0f);
   for (std::size_t i = 0; i < size; i += hn::Lanes(df)) {
     const IntVec pixel = hn::Load(di, &look.pixel[i]);
     const FloatVec found = hn::GatherIndex(df, depths, hn::Max(pixel, hn::Zero(di)));
@@ -92,6 +100,7 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, const
     hn::Store(hn::IfThenElseZero(valid, one), df, &testimony.measured[i]);
     if (hn::AllFalse(df, valid)) {
       hn::Store(zero, df, &testimony.log_ratio[i]);
+      hn::Store(zero, df, &testimony.nearness[i]);
       continue;
     }
     const FloatVec measured = hn::IfThenElse(valid, found, far);
@@ -112,6 +121,10 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, const
     const FloatVec b = hn::MulAdd(inlier, hn::Max(hn::Sub(before, below), zero), hn::Mul(outlier, t));
     const FloatVec odds = hn::Div(hn::Mul(a, t), hn::Mul(b, rest));
     hn::Store(hn::IfThenElseZero(valid, hn::Log(df, odds)), df, &testimony.log_ratio[i]);
+    const FloatVec behind = hn::Sub(depth, measured);
+    const bool all_before = hn::AllTrue(df, hn::Lt(behind, zero));
+    hn::Store(hn::IfThenElseZero(valid, all_before ? one : nearness(behind, per_thickness)), df,
+              &testimony.nearness[i]);
   }
 }
 
@@ -172,12 +185,13 @@ void lookAny(const PreparedView& view, const PointBlock& block, BlockLook& look)
   }
 }
 
-// Several hypotheses, or a thickness prior.
-void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, const BlockLook& look,
-                std::size_t size, BlockTestimony& testimony) {
+// Several hypotheses.
+void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, float thickness,
+                const BlockLook& look, std::size_t size, BlockTestimony& testimony) {
+  const float per_thickness = thickness > 0 ? 1 / thickness : 0.0f;
   const JudgedView& view = *prepared.view;
   for (std::size_t i = 0; i < size; ++i) {
-    testimony.log_ratio[i] = testimony.measured[i] = 0.0f;
+    testimony.log_ratio[i] = testimony.measured[i] = testimony.nearness[i] = 0.0f;
     if (look.pixel[i] < 0) continue;
     const std::size_t pixel = static_cast<std::size_t>(look.pixel[i]);
     if (view.depth.data()[pixel] == kInvalidDepth) continue;
@@ -188,6 +202,8 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, cons
     });
     testimony.log_ratio[i] = ratio.combine(odds, view.outlier.data()[pixel], depth);
     testimony.measured[i] = 1.0f;
+    const float behind = std::max(depth - view.depth.data()[pixel], 0.0f) * per_thickness;
+    testimony.nearness[i] = std::exp(-behind * behind);
   }
 }
 
@@ -205,14 +221,13 @@ BlockLook look(const PreparedView& view, const PointBlock& block) {
   return result;
 }
 
-BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, const BlockLook& look,
-                       std::size_t size) {
+BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
+                       const BlockLook& look, std::size_t size) {
   BlockTestimony result;
-  const bool one_peak = view.view->alternatives.empty() && !ratio.thick();
-  if (one_peak) {
-    HWY_DYNAMIC_DISPATCH(testifySingle)(view, ratio, look, size, result);
+  if (view.view->alternatives.empty()) {
+    HWY_DYNAMIC_DISPATCH(testifySingle)(view, ratio, thickness, look, size, result);
   } else {
-    testifyAny(view, ratio, look, size, result);
+    testifyAny(view, ratio, thickness, look, size, result);
   }
   return result;
 }

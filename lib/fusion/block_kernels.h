@@ -13,9 +13,10 @@ namespace vdbfuse {
 /// point within 1e-4 pixels of the border between two pixels may be given to either.
 BlockLook look(const PreparedView& view, const PointBlock& block);
 
-/// log L of every point whose pixel is measured: LikelihoodRatio of all its hypotheses.
-BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, const BlockLook& look,
-                       std::size_t size);
+/// log L of every point whose pixel is measured: LikelihoodRatio of all its hypotheses. `thickness`: τ of
+/// BlockTestimony::nearness, 0: infinite.
+BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
+                       const BlockLook& look, std::size_t size);
 
 /// sums[i · nodes + k] += weight · log(1 − v_k + v_k L_i) where measured.
 void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,

@@ -103,7 +103,7 @@ class TestimonyGrid {
   void add(const PreparedView& view, const PointBlock& block, float weight, float* sums,
            float* reports) const {
     if (!view.projector.mightSee(block.centre, block.radius)) return;
-    const BlockTestimony said = testify(view, ratio_, look(view, block), block.size);
+    const BlockTestimony said = testify(view, ratio_, 0.0f, look(view, block), block.size);
     accumulate(integral_, said, weight, block.size, sums);
     for (std::size_t i = 0; i < block.size; ++i) reports[i] += weight * said.measured[i];
   }

@@ -30,9 +30,9 @@ class Combiner {
   // out[i] = evidence at points[i]; at most a block of them.
   void combine(std::span<const Eigen::Vector3d> points, float* out) const {
     const PointBlock block(points);
-    std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()),
+    std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()), near(points.size()),
         empties(points.size()), masked(points.size());
-    const TestimonySums sums{nodes, reports, empties, masked};
+    const TestimonySums sums{nodes, reports, near, empties, masked};
     for (const PreparedView& view : views_)
       sum_.add(view, block, static_cast<float>(view.view->weight), sums);
     sum_.finish(sums, out);
@@ -96,6 +96,7 @@ std::vector<std::string> validate(const EvidenceOptions& options) {
     problems.emplace_back("visibility must lie in [0, 1]");
   if (!std::isfinite(options.prior)) problems.emplace_back("prior must be finite");
   if (!(options.balloon >= 0)) problems.emplace_back("balloon must not be negative");
+  if (!(options.thickness >= 0)) problems.emplace_back("thickness must not be negative");
   if (options.max_no_returns < 0) problems.emplace_back("max_no_returns must not be negative");
   if (!(options.mask_error > 0 && options.mask_error < 0.5))
     problems.emplace_back("mask_error must lie in (0, 0.5)");

@@ -51,6 +51,8 @@ struct BlockLook {
 struct BlockTestimony {
   alignas(64) std::array<float, PointBlock::kCapacity> log_ratio;  ///< log L; 0 where nothing was measured
   alignas(64) std::array<float, PointBlock::kCapacity> measured;   ///< 1 or 0
+  /// e^(−(δ/τ)²) at δ behind the measurement, 1 before it, 0 where nothing was measured.
+  alignas(64) std::array<float, PointBlock::kCapacity> nearness;
 };
 
 }  // namespace vdbfuse

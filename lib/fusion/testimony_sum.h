@@ -14,6 +14,7 @@ namespace vdbfuse {
 struct TestimonySums {
   std::span<float> nodes;    ///< nodeCount() a point
   std::span<float> reports;  ///< Σ w of the views that measured something
+  std::span<float> near;     ///< Σ w e^(−(δ/τ)²) of the same, δ: how far behind their measurement
   std::span<float> empties;  ///< Σ w of the views whose sensor met nothing
   std::span<float> masked;   ///< Σ w of the views whose silhouette leaves the point out
 

@@ -26,7 +26,7 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   const std::vector<CellFace> faces = cellFaces(octree);
 
   timer.start("evidence");
-  std::vector<float> sigma = evidence(judged, octree, options.evidence, progress);  // σ(x)
+  std::vector<float> sigma = evidence(judged, octree, evidenceOptions(domain, options), progress);  // σ(x)
 
   timer.start("cut");
   const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
@@ -83,7 +83,6 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
   result.width = scan.width, result.height = scan.height;
   result.calibration = scan.calibration;
   if (options.domain) useDomain(*options.domain, scan.judgement);
-  scan.judgement.judged.sensor.thickness = options.thickness;
   const JudgedViews& judged = scan.judgement.judged;
   const Box& domain = scan.judgement.domain;
   const GridFrame frame = chooseFrame(domain, result.calibration, options);

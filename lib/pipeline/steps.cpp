@@ -15,6 +15,7 @@ namespace {
 // A default voxel never makes the longest side of the domain longer than this.
 constexpr double kDefaultLongestSide = 512;
 constexpr double kLambdaPerVoxel = 0.3;
+constexpr double kThicknessPerDiagonal = 0.2;
 
 double scaleAtExponent(const NoiseLaw& law, double typical, int exponent) {
   return law.at(typical) / std::pow(typical, exponent);
@@ -47,7 +48,7 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(options.max_level >= 0 && options.max_level <= 6, "max_level must lie in 0 ... 6");
   require(options.noise_scale >= 0, "noise_scale must be positive");
   require(options.noise_scale == 0 || !options.noise, "noise and noise_scale exclude each other");
-  require(options.thickness >= 0, "thickness must be positive");
+  require(options.thickness.value_or(0) >= 0, "thickness must not be negative");
   require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
           "outliers must lie in [0, 1)");
   require(options.mu >= 0 && options.lambda >= 0, "mu and lambda must not be negative");
@@ -89,8 +90,7 @@ SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& gra
                             CalibrationReport& report, const Progress& progress) {
   const NoiseLaw guess = guessNoise(views, depths.median);
   const NoiseCalibration found = calibrateNoise(views, graph, guess, depths.median, progress);
-  SensorModel sensor{options.noise_shape, options.noise.value_or(found.noise), depths.near, depths.far,
-                     options.thickness};
+  SensorModel sensor{options.noise_shape, options.noise.value_or(found.noise), depths.near, depths.far};
   if (options.noise_scale > 0) sensor.noise = lawThrough(options.noise_scale, depths.median, found.exponent);
   report.noise_scale = sensor.noise.at(depths.median);
   report.noise_exponent = options.noise ? -1 : found.exponent;
@@ -138,6 +138,12 @@ CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFr
       options.lambda > 0 ? options.lambda : kLambdaPerVoxel / std::max(frame.voxel, calibration.noise_scale);
   cut.border = options.border.value_or(chooseBorder(judged, domain));
   return cut;
+}
+
+EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& options) {
+  EvidenceOptions evidence = options.evidence;
+  evidence.thickness = options.thickness.value_or(kThicknessPerDiagonal * domain.diagonal().norm());
+  return evidence;
 }
 
 std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged) {

@@ -33,6 +33,8 @@ GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
                       const CalibrationReport& calibration, const ReconstructOptions& options);
 
+EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& options);
+
 std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged);
 
 /// Normals, support of each vertex and the share of the area without any.

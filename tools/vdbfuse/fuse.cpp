@@ -33,7 +33,7 @@ struct Request {
   fs::path input, output, judgement, grids, json;
   SensorArguments sensor;
   ReconstructOptions reconstruct;
-  std::string border = "auto", thickness = "off";
+  std::string border = "auto", thickness = "auto";
   int threads = 0;
   bool overwrite = false, quiet = false;
 };
@@ -63,7 +63,8 @@ void addEnergyOptions(CLI::App& app, Request& r) {
   app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")
       ->capture_default_str();
   app.add_option("--thickness", r.thickness,
-                 "Behind a surface, how far solid is to be expected, length; off: any depth alike")
+                 "How far behind a measured surface solid is to be expected, length; auto: a fifth "
+                 "of the domain's diagonal; off: any distance alike")
       ->capture_default_str();
   app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.3/voxel")
       ->check(CLI::PositiveNumber);
@@ -85,11 +86,12 @@ void addOutputOptions(CLI::App& app, Request& r) {
   app.add_flag("--quiet", r.quiet, "Print errors only");
 }
 
-double parseThickness(const std::string& text) {
+std::optional<double> parseThickness(const std::string& text) {
+  if (text == "auto") return std::nullopt;
   if (text == "off") return 0;
   const double value = parseNumber(text).value_or(-1);
   if (!(value > 0))
-    throw InvalidArgument("--thickness", "expected 'off' or a positive length, found '" + text + "'");
+    throw InvalidArgument("--thickness", "expected 'auto', 'off' or a positive length, found '" + text + "'");
   return value;
 }
 

@@ -37,6 +37,11 @@ struct EvidenceOptions {
   /// Upper bound of b, the prior log-odds of outside. Where n views report b(n) = min(prior, −½ log ∫ Beta
   /// (1−v)ⁿ dv).
   double prior = 0.75;
+  /// τ: how far behind a measured surface the same solid is to be expected, length; 0: at any distance alike.
+  /// Where e < 0 it is multiplied by the mean of e^(−(δ/τ)²) over the views that report, δ being the distance
+  /// behind the measurement: a view that denies x from far behind knows only that something is in between.
+  /// Rule Outside.
+  double thickness = 0.0;
   /// Inflation of constant ballooning, log-odds.
   double balloon = 1.0;
   /// At most so many views' no-returns count at a point, by their weights.

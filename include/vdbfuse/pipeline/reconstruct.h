@@ -39,13 +39,14 @@ struct ReconstructOptions {
   std::optional<NoiseLaw> noise;  ///< of a known sensor; default: from overlapping views
   double noise_scale = 0.0;       ///< standard deviation at the median depth; default: from overlapping views
   std::optional<double>
-      outliers;            ///< outlier share, the same for every pixel; default: judged pixel by pixel
-  double thickness = 0.0;  ///< τ of the depth prior, length (SensorModel::thickness); 0: flat
+      outliers;  ///< outlier share, the same for every pixel; default: judged pixel by pixel
   JudgeOptions judge;
 
   // The energy.
   EvidenceOptions evidence;
-  double mu = 2.0;      ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
+  double mu = 2.0;  ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
+  /// EvidenceOptions::thickness; default: 0.2 × diagonal of the domain.
+  std::optional<double> thickness;
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.3/max(voxel, median noise)
 
   // The surface.
@@ -61,9 +62,9 @@ std::vector<std::string> validate(const ReconstructOptions& options);
 
 /// What was found out about the sensor.
 struct CalibrationReport {
-  double noise_scale = 0;  ///< at the median depth
-  int noise_exponent = 0;  ///< of depth: 0, 1 or 2; −1: the law was given
-  double median_depth = 0;  ///< of what lies in the domain, where one was given
+  double noise_scale = 0;    ///< at the median depth
+  int noise_exponent = 0;    ///< of depth: 0, 1 or 2; −1: the law was given
+  double median_depth = 0;   ///< of what lies in the domain, where one was given
   double point_spacing = 0;  ///< distance of neighbouring measurements in the world
   double miss_rate = 0;
   double outlier_share = 0;
