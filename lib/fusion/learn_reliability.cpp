@@ -5,68 +5,63 @@
 #include <cmath>
 #include <numeric>
 
-#include "fusion/two_class_em.h"
+#include "fusion/outlier_em.h"
 
 namespace vdbfuse {
 namespace {
 
 using T = PixelTestimony;
 constexpr std::size_t kConfidences = ReliabilityModel::kConfidences;
-// Everything observed of a pixel: confidence, agreement, contradiction, continuity, denial.
-constexpr std::size_t kOutcomes =
-    kConfidences * T::kAgreements * T::kContradictions * T::kContinuities * T::kDenials;
-
-std::size_t outcome(std::size_t confidence, const T& t) {
-  return (((confidence * T::kAgreements + t.agreement) * T::kContradictions + t.contradiction) *
-              T::kContinuities +
-          t.continuity) *
-             T::kDenials +
-         t.denial;
-}
+// Everything observed of a pixel: confidence, answers of the neighbours, continuity, denial.
+constexpr std::size_t kOutcomes = kConfidences * T::kAnswers * T::kContinuities * T::kDenials;
 
 struct Outcome {
-  std::size_t confidence;
-  T testimony;
+  std::size_t confidence, answer, continuity, denial;
 };
+
+std::size_t outcome(std::size_t confidence, const T& t) {
+  return ((confidence * T::kAnswers + t.answer()) * T::kContinuities + t.continuity) * T::kDenials + t.denial;
+}
 
 Outcome outcomeAt(std::size_t index) {
   const auto take = [&index](std::size_t size) {
     const std::size_t value = index % size;
     index /= size;
-    return static_cast<std::uint8_t>(value);
+    return value;
   };
-  Outcome result;
-  result.testimony.denial = take(T::kDenials);
-  result.testimony.continuity = take(T::kContinuities);
-  result.testimony.contradiction = take(T::kContradictions);
-  result.testimony.agreement = take(T::kAgreements);
-  result.confidence = index;
-  return result;
+  const std::size_t denial = take(T::kDenials), continuity = take(T::kContinuities),
+                    answer = take(T::kAnswers);
+  return {index, answer, continuity, denial};
 }
 
-// The observations that are independent given the class: what the neighbours say, continuity, confidence.
-JointCounts noCounts() {
-  return JointCounts({T::kAgreements * T::kContradictions, T::kContinuities, kConfidences});
-}
+// p(answer | outlier)/p(answer | inlier), to an order of magnitude: rounded from the shares of wrong pixels
+// in the scenario matrix, where factors of two change little. Chance rarely makes a neighbour agree, but the
+// neighbours' own mistakes often make one see past a point that is there: one that agrees outweighs any that
+// contradict. Who is neither confirmed nor contradicted is hardly known: only evidence against condemns, and
+// that is to be hidden from sensors that the surface faces (a depth that drills into the object), or to be
+// missed more often than the sensor misses.
+class AnswerRatios {
+ public:
+  explicit AnswerRatios(double miss_rate) {
+    static_assert(T::kAgreements == 6 && T::kContradictions == 3 && T::kOcclusions == 4);
+    ratios_ = {1,     50,    100,   // nobody agrees; the first is never asked for
+               0.2,   0.2,   0.4,   // one
+               0.08,  0.08,  0.08,  // two
+               0.04,  0.04,  0.04,  //
+               0.02,  0.02,  0.02,  //
+               0.005, 0.005, 0.005};
+    constexpr double kMissOfOutlier = 0.4, kMostOfMisses = 30, kLeastMissRate = 0.02;
+    const double one_miss = std::max(1.0, kMissOfOutlier / std::max(miss_rate, kLeastMissRate));
+    for (const double hidden : {0.5, 2.0, 20.0, 200.0}) {
+      for (std::size_t misses = 0; misses < T::kMisses; ++misses)
+        ratios_.push_back(hidden * std::min(kMostOfMisses, std::pow(one_miss, misses)));
+    }
+  }
+  double of(std::size_t answer) const { return ratios_[answer]; }
 
-std::array<std::size_t, 3> observations(const Outcome& o) {
-  const T& t = o.testimony;
-  return {static_cast<std::size_t>(t.agreement) * T::kContradictions + t.contradiction, t.continuity,
-          o.confidence};
-}
-
-// Chance rarely makes a neighbour agree, but the neighbours' own mistakes often make one see past a point
-// that is there: one that agrees outweighs two that contradict. Who is neither confirmed nor contradicted is
-// not known: only evidence against condemns. Rounded from the shares of wrong pixels in the scenario matrix.
-FirstOpinion opinionOfTestimony() {
-  static_assert(T::kContradictions == 3);
-  FirstOpinion opinion;
-  opinion.outlier = {std::nullopt, 0.9, 0.98,  // nobody agrees
-                     0.05,         0.1, 0.2};  // one does
-  opinion.outlier.insert(opinion.outlier.end(), 3, 0.02);
-  opinion.outlier.resize(T::kAgreements * T::kContradictions, 0.005);
-  return opinion;
-}
+ private:
+  std::vector<double> ratios_;
+};
 
 std::vector<double> countOutcomes(const Testimonies& testimonies,
                                   const std::vector<Image<std::uint8_t>>& confidence) {
@@ -89,13 +84,13 @@ void hearDenial(const std::vector<double>& counts, std::vector<double>& table) {
   std::array<double, T::kDenials> good, bad;
   good.fill(1.0), bad.fill(1.0);
   for (std::size_t k = 0; k < kOutcomes; ++k) {
-    const std::size_t bin = outcomeAt(k).testimony.denial;
+    const std::size_t bin = outcomeAt(k).denial;
     good[bin] += counts[k] * (1 - table[k]), bad[bin] += counts[k] * table[k];
   }
   const double good_total = std::accumulate(good.begin(), good.end(), 0.0);
   const double bad_total = std::accumulate(bad.begin(), bad.end(), 0.0);
   for (std::size_t k = 0; k < kOutcomes; ++k) {
-    const std::size_t bin = outcomeAt(k).testimony.denial;
+    const std::size_t bin = outcomeAt(k).denial;
     const double against = table[k] * bad[bin] / bad_total,
                  in_favour = (1 - table[k]) * good[bin] / good_total;
     table[k] = against / (against + in_favour);
@@ -157,14 +152,19 @@ void ReliabilityTable::describe(const std::vector<double>& counts) {
 ReliabilityTable learnReliability(const Testimonies& testimonies,
                                   const std::vector<Image<std::uint8_t>>& confidence) {
   const std::vector<double> counts = countOutcomes(testimonies, confidence);
-  JointCounts joint = noCounts();
-  for (std::size_t k = 0; k < kOutcomes; ++k)
-    joint.counts[joint.index(observations(outcomeAt(k)))] += counts[k];
-  const TwoClassModel model = fitTwoClasses(joint, opinionOfTestimony());
+  const AnswerRatios ratios(testimonies.miss_rate);
+  std::vector<OutlierCell> cells;
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const Outcome o = outcomeAt(k);
+    if (counts[k] > 0) cells.push_back({counts[k], ratios.of(o.answer), o.continuity, o.confidence});
+  }
+  const OutlierModel model = fitOutliers(cells, T::kContinuities, kConfidences);
 
   ReliabilityTable result;
-  for (std::size_t k = 0; k < kOutcomes; ++k)
-    result.table_.push_back(model.outlierGiven(observations(outcomeAt(k))));
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const Outcome o = outcomeAt(k);
+    result.table_.push_back(model.outlierGiven(ratios.of(o.answer), o.continuity, o.confidence));
+  }
   hearDenial(counts, result.table_);
   result.describe(counts);
   return result;

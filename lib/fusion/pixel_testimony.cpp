@@ -17,7 +17,16 @@ constexpr int kConfirmed = 3;                // this many agreeing neighbours pr
 
 std::uint8_t continuityBin(float share) { return share < 0.4f ? 0 : share < 0.7f ? 1 : share < 0.9f ? 2 : 3; }
 
-enum class Answer { Nothing, Agrees, SeesPast, Missed };
+// The surface faces a sensor that it sees at less than 75°.
+constexpr float kFacingCosine = 0.26f;
+
+std::uint8_t occlusionBin(int hidden) { return hidden < 2 ? 0 : hidden == 2 ? 1 : hidden < 5 ? 2 : 3; }
+
+enum class Answer { Unseen, Agrees, SeesPast, Missed, Hidden };
+
+std::uint8_t capped(int count, std::size_t bins) {
+  return static_cast<std::uint8_t>(std::min<int>(count, static_cast<int>(bins) - 1));
+}
 
 // Looks at confirmed points, and how many of them met nothing.
 struct MissCounts {
@@ -57,26 +66,35 @@ class Hearing {
     const Eigen::Vector3d point = worldPoint(views_[index_], x, y);
     const double noise = sensor_.noise.at(views_[index_].map.depth(x, y));
     const Eigen::Vector3f normal = surfaces_[index_].normal(x, y);
-    int agreeing = 0, past = 0, missed = 0;
+    int agreeing = 0, past = 0, missed = 0, hidden = 0;
     for (std::size_t k = 0; k < projectors_.size(); ++k) {
       const Answer answer = ask(k, point, noise, normal);
       agreeing += answer == Answer::Agrees;
       past += answer == Answer::SeesPast;
       missed += answer == Answer::Missed;
+      hidden += answer == Answer::Hidden && faces(normal, neighbours_[k], point);
     }
     if (agreeing >= kConfirmed) misses.missed += missed, misses.looked += missed + agreeing;
     PixelTestimony testimony;
     testimony.measured = true;
-    testimony.agreement = static_cast<std::uint8_t>(std::min<int>(agreeing, PixelTestimony::kAgreements - 1));
-    testimony.contradiction =
-        static_cast<std::uint8_t>(std::min<int>(past, PixelTestimony::kContradictions - 1));
+    testimony.agreement = capped(agreeing, PixelTestimony::kAgreements);
+    testimony.contradiction = capped(past, PixelTestimony::kContradictions);
+    testimony.occlusion = occlusionBin(hidden);
+    testimony.misses = capped(missed, PixelTestimony::kMisses);
     testimony.continuity = continuityBin(surfaces_[index_].continuity(x, y));
     return testimony;
   }
 
+  // An unknown normal may face anything.
+  bool faces(const Eigen::Vector3f& normal, std::size_t view, const Eigen::Vector3d& point) const {
+    const Eigen::Vector3f to_sensor =
+        (views_[view].world_from_camera.translation() - point).cast<float>().normalized();
+    return normal.isZero() || normal.dot(to_sensor) > kFacingCosine;
+  }
+
   Answer ask(std::size_t k, const Eigen::Vector3d& point, double noise, const Eigen::Vector3f& normal) const {
     const std::optional<Sighting> seen = projectors_[k](point);
-    if (!seen) return Answer::Nothing;
+    if (!seen) return Answer::Unseen;
     if (isOutsideMask(views_[neighbours_[k]].map, seen->x, seen->y)) return Answer::SeesPast;
     const Answer answer = compare(k, neighbours_[k], *seen, noise, normal);
     if (answer == Answer::Agrees || neighbours_[k] >= alternatives_.size()) return answer;
@@ -94,10 +112,10 @@ class Hearing {
     if (measured == kInvalidDepth) return Answer::Missed;
     const double further = measured - seen.depth, other_noise = noise_[k].at(measured);
     if (further * further > kAgreeSigmas * kAgreeSigmas * (noise * noise + other_noise * other_noise))
-      return further > 0 ? Answer::SeesPast : Answer::Nothing;
+      return further > 0 ? Answer::SeesPast : Answer::Hidden;
     const Eigen::Vector3f other_normal = surfaces_[index].normal(seen.x, seen.y);
     if (normal.isZero() || other_normal.isZero()) return Answer::Agrees;
-    return normal.dot(other_normal) >= kAgreeCosine ? Answer::Agrees : Answer::Nothing;
+    return normal.dot(other_normal) >= kAgreeCosine ? Answer::Agrees : Answer::Hidden;
   }
 
   const std::vector<View>& views_;

@@ -15,13 +15,26 @@ namespace vdbfuse {
 struct PixelTestimony {
   static constexpr std::size_t kAgreements = 6;      ///< neighbours that agree: 0 … 4, 5 or more
   static constexpr std::size_t kContradictions = 3;  ///< neighbours that see past the point: 0, 1, 2 or more
-  static constexpr std::size_t kContinuities = 4;    ///< share of the neighbourhood on the same surface
+  /// Neighbours that the surface faces and that see something else, mostly nearer: 0 or 1, 2, 3 or 4, more.
+  static constexpr std::size_t kOcclusions = 4;
+  static constexpr std::size_t kMisses = 6;        ///< neighbours that met nothing there: 0 … 4, 5 or more
+  static constexpr std::size_t kContinuities = 4;  ///< share of the neighbourhood on the same surface
   static constexpr std::size_t kDenials =
       7;  ///< smallest evidence of the others where this pixel claims free space
-  std::uint8_t agreement = 0, contradiction = 0, continuity = 0;
+  /// What the neighbours answer: agreement and contradiction, or, where there is neither, occlusion and
+  /// misses.
+  static constexpr std::size_t kAnswers = kAgreements * kContradictions + kOcclusions * kMisses;
+
+  std::uint8_t agreement = 0, contradiction = 0, occlusion = 0, misses = 0, continuity = 0;
   /// Not yet examined: the last bin, "nobody denies".
   std::uint8_t denial = kDenials - 1;
   bool measured = false;
+
+  std::size_t answer() const {
+    if (agreement > 0 || contradiction > 0)
+      return static_cast<std::size_t>(agreement) * kContradictions + contradiction;
+    return kAgreements * kContradictions + static_cast<std::size_t>(occlusion) * kMisses + misses;
+  }
 };
 
 struct Testimonies {
@@ -33,8 +46,9 @@ struct Testimonies {
 /// Asks the neighbours of each view. A neighbour agrees when its depth at the projected point is within 3
 /// combined standard deviations and its normal within 45° (a missing normal vetoes nothing); it contradicts
 /// when it measured something further away than that, or its mask says that the point is not of the object.
-/// One that sees something nearer says nothing. `alternatives`: for each neighbour other views that hold
-/// further hypotheses of its pixels; it agrees when any of them does. Views beyond its end have none.
+/// One that sees something nearer hides the point, which is strange where the surface faces it.
+/// `alternatives`: for each neighbour other views that hold further hypotheses of its pixels; it agrees when
+/// any of them does. Views beyond its end have none.
 Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
                            const SensorModel& sensor, const std::vector<std::vector<std::size_t>>& neighbours,
                            const std::vector<std::vector<std::size_t>>& alternatives,
