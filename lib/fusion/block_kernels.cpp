@@ -97,10 +97,9 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
     const IntVec pixel = hn::Load(di, &look.pixel[i]);
     const FloatVec found = hn::GatherIndex(df, depths, hn::Max(pixel, hn::Zero(di)));
     const auto valid = hn::And(hn::RebindMask(df, hn::Gt(pixel, hn::Set(di, -1))), hn::Gt(found, zero));
-    hn::Store(hn::IfThenElseZero(valid, one), df, &testimony.measured[i]);
     if (hn::AllFalse(df, valid)) {
       hn::Store(zero, df, &testimony.log_ratio[i]);
-      hn::Store(zero, df, &testimony.nearness[i]);
+      hn::Store(zero, df, &testimony.share[i]);
       continue;
     }
     const FloatVec measured = hn::IfThenElse(valid, found, far);
@@ -124,7 +123,7 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
     const FloatVec behind = hn::Sub(depth, measured);
     const bool all_before = hn::AllTrue(df, hn::Lt(behind, zero));
     hn::Store(hn::IfThenElseZero(valid, all_before ? one : nearness(behind, per_thickness)), df,
-              &testimony.nearness[i]);
+              &testimony.share[i]);
   }
 }
 
@@ -133,7 +132,7 @@ void accumulateNodes(const VisibilityIntegral& integral, const BlockTestimony& t
   const hn::CappedTag<float, 8> d;
   const std::size_t nodes = static_cast<std::size_t>(integral.nodeCount());
   for (std::size_t i = 0; i < size; ++i, sums += nodes) {
-    const float w = weight * testimony.measured[i];
+    const float w = weight * testimony.share[i];
     if (w == 0) continue;
     const VisibilityIntegral::Row row = integral.rowOf(testimony.log_ratio[i]);
     const auto f = hn::Set(d, row.share), factor = hn::Set(d, w);
@@ -191,7 +190,7 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, floa
   const float per_thickness = thickness > 0 ? 1 / thickness : 0.0f;
   const JudgedView& view = *prepared.view;
   for (std::size_t i = 0; i < size; ++i) {
-    testimony.log_ratio[i] = testimony.measured[i] = testimony.nearness[i] = 0.0f;
+    testimony.log_ratio[i] = testimony.share[i] = 0.0f;
     if (look.pixel[i] < 0) continue;
     const std::size_t pixel = static_cast<std::size_t>(look.pixel[i]);
     if (view.depth.data()[pixel] == kInvalidDepth) continue;
@@ -201,9 +200,8 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, floa
       ratio.add({measured, prepared.noise.at(measured), share}, depth, odds);
     });
     testimony.log_ratio[i] = ratio.combine(odds, view.outlier.data()[pixel], depth);
-    testimony.measured[i] = 1.0f;
     const float behind = std::max(depth - view.depth.data()[pixel], 0.0f) * per_thickness;
-    testimony.nearness[i] = std::exp(-behind * behind);
+    testimony.share[i] = std::exp(-behind * behind);
   }
 }
 
@@ -239,7 +237,7 @@ void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testim
     return;
   }
   for (std::size_t i = 0; i < size; ++i, sums += integral.nodeCount())
-    if (testimony.measured[i] != 0) integral.add(testimony.log_ratio[i], weight, sums);
+    if (testimony.share[i] != 0) integral.add(testimony.log_ratio[i], weight, sums);
 }
 
 void logMeans(const VisibilityIntegral& integral, const float* sums, std::size_t size, float* out) {

@@ -14,11 +14,11 @@ namespace vdbfuse {
 BlockLook look(const PreparedView& view, const PointBlock& block);
 
 /// log L of every point whose pixel is measured: LikelihoodRatio of all its hypotheses. `thickness`: τ of
-/// BlockTestimony::nearness, 0: infinite.
+/// BlockTestimony::share, 0: infinite.
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
                        const BlockLook& look, std::size_t size);
 
-/// sums[i · nodes + k] += weight · log(1 − v_k + v_k L_i) where measured.
+/// sums[i · nodes + k] += weight · share_i · log(1 − v_k + v_k L_i).
 void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,
                 std::size_t size, float* sums);
 

@@ -105,7 +105,7 @@ class TestimonyGrid {
     if (!view.projector.mightSee(block.centre, block.radius)) return;
     const BlockTestimony said = testify(view, ratio_, 0.0f, look(view, block), block.size);
     accumulate(integral_, said, weight, block.size, sums);
-    for (std::size_t i = 0; i < block.size; ++i) reports[i] += weight * said.measured[i];
+    for (std::size_t i = 0; i < block.size; ++i) reports[i] += weight * said.share[i];
   }
 
   // Shares of the way at which it enters and leaves the grid, within [0, 1]; first > last when it misses it.

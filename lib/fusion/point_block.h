@@ -50,9 +50,9 @@ struct BlockLook {
 /// What one view's measurements say of the points of a block.
 struct BlockTestimony {
   alignas(64) std::array<float, PointBlock::kCapacity> log_ratio;  ///< log L; 0 where nothing was measured
-  alignas(64) std::array<float, PointBlock::kCapacity> measured;   ///< 1 or 0
-  /// e^(−(δ/τ)²) at δ behind the measurement, 1 before it, 0 where nothing was measured.
-  alignas(64) std::array<float, PointBlock::kCapacity> nearness;
+  /// How much of a view speaks: 0 where nothing was measured, 1 in front of the measurement, e^(−(δ/τ)²) at δ
+  /// behind it.
+  alignas(64) std::array<float, PointBlock::kCapacity> share;
 };
 
 }  // namespace vdbfuse

@@ -35,12 +35,11 @@ struct RunningEvidence::Impl {
         sum(sensor, options.miss_rate, usable(options.evidence), options.most_views),
         nodes(origins.size() * kLeaf * sum.nodeCount()),
         reports(origins.size() * kLeaf),
-        near(origins.size() * kLeaf),
         empties(origins.size() * kLeaf),
         masked(origins.size() * kLeaf) {}
 
   TestimonySums leaf(std::size_t index) { return sums().part(index * kLeaf, kLeaf); }
-  TestimonySums sums() { return {nodes, reports, near, empties, masked}; }
+  TestimonySums sums() { return {nodes, reports, empties, masked}; }
 
   void accumulate(const JudgedView& view, float weight) {
     const PreparedView prepared(view, sensor);
@@ -58,7 +57,7 @@ struct RunningEvidence::Impl {
   GridFrame frame;
   std::vector<Index3> origins;
   TestimonySum sum;
-  std::vector<float> nodes, reports, near, empties, masked;
+  std::vector<float> nodes, reports, empties, masked;
 };
 
 RunningEvidence::RunningEvidence(const SensorModel& sensor, const GridFrame& frame,

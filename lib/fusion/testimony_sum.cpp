@@ -24,7 +24,7 @@ BlockTestimony hear(const PreparedView& prepared, const LikelihoodRatio& ratio, 
   if (!prepared.has_mask) return said;
   for (std::size_t i = 0; i < size; ++i) {
     if (seen.pixel[i] >= 0 && prepared.view->look.data()[seen.pixel[i]] == Look::Outside)
-      said.measured[i] = said.log_ratio[i] = said.nearness[i] = 0.0f;
+      said.share[i] = said.log_ratio[i] = 0.0f;
   }
   return said;
 }
@@ -43,7 +43,7 @@ Measurement measurementAt(const PreparedView& prepared, std::size_t pixel) {
 TestimonySums TestimonySums::part(std::size_t first, std::size_t count) const {
   const std::size_t per_point = nodes.size() / reports.size();
   return {nodes.subspan(first * per_point, count * per_point), reports.subspan(first, count),
-          near.subspan(first, count), empties.subspan(first, count), masked.subspan(first, count)};
+          empties.subspan(first, count), masked.subspan(first, count)};
 }
 
 TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const EvidenceOptions& options,
@@ -54,7 +54,8 @@ TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const Ev
       integral_(options.visibility_prior, options.rule == EvidenceRule::Outside ? options.visibility : 1.0,
                 total_weight),
       no_return_(static_cast<float>(logNoReturnRatio(miss_rate))),
-      mask_(static_cast<float>(logMaskRatio(options.mask_error))) {}
+      mask_(static_cast<float>(logMaskRatio(options.mask_error))),
+      thickness_(options.rule == EvidenceRule::Outside ? static_cast<float>(options.thickness) : 0.0f) {}
 
 void TestimonySum::add(const PreparedView& view, const PointBlock& block, float weight,
                        const TestimonySums& sums) const {
@@ -74,13 +75,11 @@ void TestimonySum::add(const PreparedView& view, const PointBlock& block, float 
 void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& block, float weight,
                               const TestimonySums& sums) const {
   const BlockLook seen = look(prepared, block);
-  const BlockTestimony said =
-      hear(prepared, ratio_, static_cast<float>(options_.thickness), seen, block.size);
+  const BlockTestimony said = hear(prepared, ratio_, thickness_, seen, block.size);
   accumulate(integral_, said, weight, block.size, sums.nodes.data());
   for (std::size_t i = 0; i < block.size; ++i) {
-    sums.reports[i] += weight * said.measured[i];
-    sums.near[i] += weight * said.nearness[i];
-    if (seen.pixel[i] < 0 || said.measured[i] != 0) continue;
+    sums.reports[i] += weight * said.share[i];
+    if (seen.pixel[i] < 0 || said.share[i] != 0) continue;
     const Look look = prepared.view->look.data()[seen.pixel[i]];
     if (look == Look::Empty) sums.empties[i] += weight;
     if (look == Look::Outside) sums.masked[i] += weight;
@@ -91,12 +90,11 @@ void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& bl
 void TestimonySum::addPaper(const PreparedView& prepared, const PointBlock& block, float weight,
                             const TestimonySums& sums) const {
   const BlockLook seen = look(prepared, block);
-  const BlockTestimony said =
-      hear(prepared, ratio_, static_cast<float>(options_.thickness), seen, block.size);
+  const BlockTestimony said = hear(prepared, ratio_, thickness_, seen, block.size);
   const float sign = weight > 0 ? 1.0f : -1.0f;
   for (std::size_t i = 0; i < block.size; ++i) {
     const bool masked = seen.pixel[i] >= 0 && prepared.view->look.data()[seen.pixel[i]] == Look::Outside;
-    if (said.measured[i] == 0 && !masked) continue;
+    if (said.share[i] == 0 && !masked) continue;
     const float t = (ratio_.clampDepth(seen.depth[i]) - ratio_.near()) * ratio_.perRange();
     sums.nodes[i] -= sign * softplus(std::log((1 - t) / t) + (masked ? mask_ : said.log_ratio[i]));
     sums.reports[i] += sign;
@@ -133,11 +131,8 @@ void TestimonySum::finishOutside(const TestimonySums& sums, float* evidence) con
     if (masked > unconfirmed) integral_.add(mask_, masked - unconfirmed, node);
   }
   logMeans(integral_, nodes.data(), count, evidence);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     evidence[i] += static_cast<float>(std::min(options_.prior, integral_.halfDenial(sums.reports[i])));
-    if (evidence[i] < 0)
-      evidence[i] *= std::clamp(sums.near[i] / std::max(sums.reports[i], 1e-6f), 0.0f, 1.0f);
-  }
 }
 
 // Without self-occlusion a view that leaves the point out counts with its whole ratio, but for the first one.

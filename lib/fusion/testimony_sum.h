@@ -13,8 +13,7 @@ namespace vdbfuse {
 /// The sums of some points, side by side.
 struct TestimonySums {
   std::span<float> nodes;    ///< nodeCount() a point
-  std::span<float> reports;  ///< Σ w of the views that measured something
-  std::span<float> near;     ///< Σ w e^(−(δ/τ)²) of the same, δ: how far behind their measurement
+  std::span<float> reports;  ///< Σ w share of the views that measured something
   std::span<float> empties;  ///< Σ w of the views whose sensor met nothing
   std::span<float> masked;   ///< Σ w of the views whose silhouette leaves the point out
 
@@ -50,7 +49,7 @@ class TestimonySum {
   SensorModel sensor_;
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
-  float no_return_, mask_;
+  float no_return_, mask_, thickness_;
 };
 
 }  // namespace vdbfuse

@@ -63,7 +63,7 @@ void addEnergyOptions(CLI::App& app, Request& r) {
   app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")
       ->capture_default_str();
   app.add_option("--thickness", r.thickness,
-                 "How far behind a measured surface solid is to be expected, length; auto: a fifth "
+                 "How far behind a measured surface solid is to be expected, length; auto: 0.22 "
                  "of the domain's diagonal; off: any distance alike")
       ->capture_default_str();
   app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.3/voxel")

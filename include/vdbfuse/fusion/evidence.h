@@ -38,9 +38,8 @@ struct EvidenceOptions {
   /// (1−v)ⁿ dv).
   double prior = 0.75;
   /// τ: how far behind a measured surface the same solid is to be expected, length; 0: at any distance alike.
-  /// Where e < 0 it is multiplied by the mean of e^(−(δ/τ)²) over the views that report, δ being the distance
-  /// behind the measurement: a view that denies x from far behind knows only that something is in between.
-  /// Rule Outside.
+  /// At δ behind its measurement a view counts as e^(−(δ/τ)²) of a view, in the product and in b: from far
+  /// behind it knows only that something is in between. Rule Outside.
   double thickness = 0.0;
   /// Inflation of constant ballooning, log-odds.
   double balloon = 1.0;

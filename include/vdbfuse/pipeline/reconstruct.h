@@ -45,7 +45,7 @@ struct ReconstructOptions {
   // The energy.
   EvidenceOptions evidence;
   double mu = 2.0;  ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
-  /// EvidenceOptions::thickness; default: 0.2 × diagonal of the domain.
+  /// EvidenceOptions::thickness; default: 0.22 × diagonal of the domain.
   std::optional<double> thickness;
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.3/max(voxel, median noise)
 
