@@ -184,7 +184,7 @@ void lookAny(const PreparedView& view, const PointBlock& block, BlockLook& look)
   }
 }
 
-// Several hypotheses.
+// Several hypotheses, or a depth prior that is not flat.
 void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, float thickness,
                 const BlockLook& look, std::size_t size, BlockTestimony& testimony) {
   const float per_thickness = thickness > 0 ? 1 / thickness : 0.0f;
@@ -222,7 +222,7 @@ BlockLook look(const PreparedView& view, const PointBlock& block) {
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
                        const BlockLook& look, std::size_t size) {
   BlockTestimony result;
-  if (view.view->alternatives.empty()) {
+  if (view.view->alternatives.empty() && !ratio.thick()) {
     HWY_DYNAMIC_DISPATCH(testifySingle)(view, ratio, thickness, look, size, result);
   } else {
     testifyAny(view, ratio, thickness, look, size, result);

@@ -28,7 +28,7 @@ class LikelihoodRatio {
   /// Sums over the peaks of what inliers say; then log() of both.
   struct Odds {
     float behind = 0;  ///< Σ share (F(far) − F(d))
-    float before = 0;  ///< Σ share (F(d) − F(near))
+    float before = 0;  ///< Σ share (F(d) − F(near)), over its normaliser with a thickness prior
   };
 
   float log(float measured, float noise, float outlier, float depth) const {
@@ -45,15 +45,16 @@ class LikelihoodRatio {
     const float before = cdf((depth - peak.depth) * per_noise);
     const float first = cdf((near_ - peak.depth) * per_noise), last = cdf((far_ - peak.depth) * per_noise);
     odds.behind += peak.share * std::max(last - before, 0.0f);
-    odds.before += peak.share * std::max(before - first, 0.0f);
+    odds.before += peak.share * (prior_decay_ > 0 ? thick(peak, depth) : std::max(before - first, 0.0f));
   }
   float combine(const Odds& odds, float outlier, float depth) const {
     const float t = (depth - near_) * per_range_;
     const float a = ((1 - outlier) * odds.behind + outlier * (1 - t)) / (1 - t);
-    const float b = (1 - outlier) * odds.before / t + outlier;
+    const float b = (1 - outlier) * odds.before * (prior_decay_ > 0 ? 1.0f : 1.0f / t) + outlier;
     return std::log(a / b);
   }
 
+  bool thick() const { return prior_decay_ > 0; }
   /// F at kSteps + 2 places from −kReach to kReach and a step beyond.
   const float* table() const { return cdf_.data(); }
   float near() const { return near_; }
@@ -61,14 +62,19 @@ class LikelihoodRatio {
   float perRange() const { return per_range_; }
 
  private:
+  static constexpr int kDecays = 32;
+
   float cdf(float u) const {
     const float place = (std::clamp(u, -kReach, kReach) + kReach) * (kSteps / (2 * kReach));
     const std::size_t i = static_cast<std::size_t>(place);
     return cdf_[i] + (place - static_cast<float>(i)) * (cdf_[i + 1] - cdf_[i]);
   }
+  float thick(const Peak& peak, float depth) const;
+  float decayed(float u, float kappa) const;
 
-  float near_, far_, per_range_, first_, last_;
+  float near_, far_, per_range_, first_, last_, prior_decay_;
   std::vector<float> cdf_;
+  std::vector<std::vector<float>> decayed_;  ///< ∫ up to u of f(y) e^(−κ(u−y)) dy, a row a κ
 };
 
 }  // namespace vdbfuse

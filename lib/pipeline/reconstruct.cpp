@@ -83,6 +83,7 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
   result.width = scan.width, result.height = scan.height;
   result.calibration = scan.calibration;
   if (options.domain) useDomain(*options.domain, scan.judgement);
+  scan.judgement.judged.sensor.prior_decay = options.prior_decay;
   const JudgedViews& judged = scan.judgement.judged;
   const Box& domain = scan.judgement.domain;
   const GridFrame frame = chooseFrame(domain, result.calibration, options);

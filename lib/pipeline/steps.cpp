@@ -48,6 +48,7 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(options.max_level >= 0 && options.max_level <= 6, "max_level must lie in 0 ... 6");
   require(options.noise_scale >= 0, "noise_scale must be positive");
   require(options.noise_scale == 0 || !options.noise, "noise and noise_scale exclude each other");
+  require(options.prior_decay >= 0, "prior_decay must not be negative");
   require(options.thickness.value_or(0) >= 0, "thickness must not be negative");
   require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
           "outliers must lie in [0, 1)");
@@ -91,6 +92,7 @@ SensorModel calibrateSensor(const std::vector<View>& views, const ViewGraph& gra
   const NoiseLaw guess = guessNoise(views, depths.median);
   const NoiseCalibration found = calibrateNoise(views, graph, guess, depths.median, progress);
   SensorModel sensor{options.noise_shape, options.noise.value_or(found.noise), depths.near, depths.far};
+  sensor.prior_decay = options.prior_decay;
   if (options.noise_scale > 0) sensor.noise = lawThrough(options.noise_scale, depths.median, found.exponent);
   report.noise_scale = sensor.noise.at(depths.median);
   report.noise_exponent = options.noise ? -1 : found.exponent;

@@ -129,6 +129,7 @@ std::vector<std::string> validate(const SensorModel& model) {
   const auto positiveAt = [&](double depth) { return !std::isfinite(depth) || law.at(depth) > 0; };
   if (!(positiveAt(model.near) && positiveAt(model.far)) || law == NoiseLaw{})
     problems.emplace_back("the noise scale must be positive");
+  if (!(model.prior_decay >= 0)) problems.emplace_back("prior_decay must not be negative");
   return problems;
 }
 

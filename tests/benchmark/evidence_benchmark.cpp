@@ -67,7 +67,7 @@ void BM_Testify(benchmark::State& state) {
     for (const PreparedView& view : views) looks.push_back(look(view, PointBlock(block)));
   for (auto _ : state) {
     for (std::size_t i = 0; i < looks.size(); ++i)
-      benchmark::DoNotOptimize(testify(views[i % kViews], ratio, looks[i], 512));
+      benchmark::DoNotOptimize(testify(views[i % kViews], ratio, 0.25f, looks[i], 512));
   }
   pairs(state, 64 * 512 * kViews);
 }
@@ -78,7 +78,7 @@ void BM_Accumulate(benchmark::State& state) {
   BlockTestimony said;
   Random random(1);
   for (std::size_t i = 0; i < 512; ++i)
-    said.log_ratio[i] = static_cast<float>(random.uniform(-6, 6)), said.measured[i] = 1;
+    said.log_ratio[i] = static_cast<float>(random.uniform(-6, 6)), said.share[i] = 1;
   std::vector<float> sums(512 * static_cast<std::size_t>(integral.nodeCount()));
   for (auto _ : state) {
     accumulate(integral, said, 1e-6f, 512, sums.data());

@@ -87,17 +87,40 @@ TEST(BlockKernels, TheTestimonyOfABlockIsTheExactRatioOfEachPoint) {
     const LikelihoodRatio ratio(scene.judged.sensor);
     const auto points = randomPoints(500, Eigen::Vector3d::Zero(), 0.55);
     const BlockLook seen = look(view, PointBlock(points));
-    const BlockTestimony said = testify(view, ratio, seen, points.size());
+    const BlockTestimony said = testify(view, ratio, 0.0f, seen, points.size());
     std::size_t measured = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const float depth = seen.pixel[i] < 0 ? 0 : view.view->depth.data()[seen.pixel[i]];
-      ASSERT_EQ(said.measured[i], depth == kInvalidDepth ? 0.0f : 1.0f);
+      ASSERT_EQ(said.share[i], depth == kInvalidDepth ? 0.0f : 1.0f);
       if (depth == kInvalidDepth) continue;
       ++measured;
       const Measurement m(depth, view.noise.at(depth), view.view->outlier.data()[seen.pixel[i]]);
       EXPECT_NEAR(said.log_ratio[i], logLikelihoodRatio(scene.judged.sensor, m, seen.depth[i]), 2e-3) << i;
     }
     EXPECT_GT(measured, 200u);
+  }
+}
+
+TEST(BlockKernels, AViewCountsForLessBehindWhatItMeasured) {
+  constexpr float kThickness = 0.1f;
+  for (const bool several : {false, true}) {
+    OneView scene;
+    JudgedView& judged = scene.judged.views.front();
+    if (several) judged.alternatives.push_back({Image<float>(64, 64), Image<float>(64, 64)});
+    const PreparedView view = prepare(scene.judged).front();
+    const LikelihoodRatio ratio(scene.judged.sensor);
+    const auto points = randomPoints(500, Eigen::Vector3d::Zero(), 0.55);
+    const BlockLook seen = look(view, PointBlock(points));
+    const BlockTestimony said = testify(view, ratio, kThickness, seen, points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const float depth = seen.pixel[i] < 0 ? 0 : judged.depth.data()[seen.pixel[i]];
+      if (depth == kInvalidDepth) {
+        ASSERT_EQ(said.share[i], 0.0f);
+        continue;
+      }
+      const double behind = std::max(0.0f, (seen.depth[i] - depth) / kThickness);
+      ASSERT_NEAR(said.share[i], std::exp(-behind * behind), 1e-5) << several;
+    }
   }
 }
 
@@ -110,9 +133,9 @@ TEST(BlockKernels, AnAlternativeDepthIsHeard) {
   const LikelihoodRatio ratio(scene.judged.sensor);
   const auto points = randomPoints(300, Eigen::Vector3d::Zero(), 0.4);
   const BlockLook seen = look(view, PointBlock(points));
-  const BlockTestimony said = testify(view, ratio, seen, points.size());
+  const BlockTestimony said = testify(view, ratio, 0.0f, seen, points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (said.measured[i] == 0) continue;
+    if (said.share[i] == 0) continue;
     const float depth = view.view->depth.data()[seen.pixel[i]];
     Measurement m(depth, view.noise.at(depth), 0.01);
     m.hypotheses[0].share = 0.6;
@@ -128,13 +151,13 @@ TEST(BlockKernels, AccumulatingIsAddingEachAndTakingAwayIsTheReverse) {
   Random random(2);
   for (std::size_t i = 0; i < 512; ++i) {
     said.log_ratio[i] = static_cast<float>(random.uniform(-8, 8));
-    said.measured[i] = i % 3 == 0 ? 0.0f : 1.0f;
+    said.share[i] = i % 3 == 0 ? 0.0f : i % 3 == 1 ? 0.4f : 1.0f;
   }
   const std::size_t nodes = static_cast<std::size_t>(integral.nodeCount());
   std::vector<float> sums(512 * nodes, 0.0f), expected(512 * nodes, 0.0f);
   accumulate(integral, said, 0.7f, 512, sums.data());
   for (std::size_t i = 0; i < 512; ++i)
-    if (said.measured[i] != 0) integral.add(said.log_ratio[i], 0.7f, &expected[i * nodes]);
+    if (said.share[i] != 0) integral.add(said.log_ratio[i], 0.7f * said.share[i], &expected[i * nodes]);
   for (std::size_t k = 0; k < sums.size(); ++k) ASSERT_NEAR(sums[k], expected[k], 1e-5);
   accumulate(integral, said, -0.7f, 512, sums.data());
   for (const float left : sums) ASSERT_NEAR(left, 0.0f, 1e-6f);

@@ -88,6 +88,19 @@ TEST(GuessNoise, IsTheNoiseOfNeighbouringPixels) {
   EXPECT_NEAR(guessNoise(views, 2.0).at(2.0), 0.01, 0.001);
 }
 
+TEST(DepthStatistics, TheMedianIsThatOfTheDomain) {
+  std::vector<View> views = test::sphereViews(4);
+  for (View& view : views)
+    for (float& d : view.map.depth)
+      if (d == kInvalidDepth) d = 9.0f;
+  const Box around(Eigen::Vector3d::Constant(-0.6), Eigen::Vector3d::Constant(0.6));
+  EXPECT_NEAR(depthStatistics(views).median, 9, 1e-6);
+  EXPECT_LT(depthStatistics(views, around).median, 2.1);
+  EXPECT_EQ(depthStatistics(views, around).far, depthStatistics(views).far);
+  const Box nowhere(Eigen::Vector3d::Constant(20), Eigen::Vector3d::Constant(21));
+  EXPECT_NEAR(depthStatistics(views, nowhere).median, 9, 1e-6);
+}
+
 TEST(DepthStatistics, AreQuantilesThatOneWildDepthDoesNotMove) {
   std::vector<View> views = test::sphereViews(4);
   const DepthStatistics clean = depthStatistics(views);

@@ -263,6 +263,22 @@ TEST(Evidence, OfACellIsThatOfItsCentreOrTheMeanOfItsSamples) {
   EXPECT_EQ(evidence(judged, octree, {}), sigma);
 }
 
+TEST(Evidence, FarBehindAMeasuredSurfaceNothingIsKnown) {
+  EvidenceOptions options;
+  options.thickness = 0.05;
+  const JudgedViews judged = sphere(1);
+  const Eigen::Vector3d eye = judged.views[0].world_from_camera.translation(), to = -eye.normalized();
+  const auto behind = [&](double distance, const EvidenceOptions& o) {
+    return evidenceAt(judged, {-0.5 * to + distance * to}, o).front();
+  };
+  EXPECT_LT(behind(0.03, options), -0.1);
+  EXPECT_NEAR(behind(0.03, options), behind(0.03, {}), 0.1);
+  EXPECT_NEAR(behind(0.3, options), 0, 1e-3);
+  EXPECT_LT(behind(0.3, {}), -0.1);
+  // In front of it nothing changes.
+  EXPECT_EQ(behind(-0.3, options), behind(-0.3, {}));
+}
+
 TEST(Evidence, OptionsThatCannotBeAreAllReportedAndRefused) {
   EvidenceOptions options;
   EXPECT_TRUE(validate(options).empty());

@@ -106,7 +106,7 @@ TEST(Likelihood, FallsWithDepthAndRisesWithTheMeasurement) {
   }
 }
 
-TEST(Likelihood, AThicknessPriorIsItsIntegral) {
+TEST(Likelihood, ADecayingDepthPriorIsItsIntegral) {
   const double tau = 0.1, noise = 0.02, outlier = 0.05, measured = 1.3;
   const SensorModel sensor{logisticNoise(), {0.02, 0, 0}, kNear, kFar, tau};
   const auto density = [&](double truth) {
@@ -122,7 +122,7 @@ TEST(Likelihood, AThicknessPriorIsItsIntegral) {
   }
 }
 
-TEST(Likelihood, FarBehindASurfaceAThicknessPriorLetsGo) {
+TEST(Likelihood, FarBehindASurfaceADecayingDepthPriorLetsGo) {
   const SensorModel flat{gaussianNoise(), {0.01, 0, 0}, kNear, kFar, 0.0};
   const SensorModel thin{gaussianNoise(), {0.01, 0, 0}, kNear, kFar, 0.05};
   const Measurement wall(1.0, 0.01, 0.01);
@@ -132,7 +132,7 @@ TEST(Likelihood, FarBehindASurfaceAThicknessPriorLetsGo) {
   EXPECT_GT(logLikelihoodRatio(thin, wall, 2.0), -1);
 }
 
-TEST(Likelihood, TheTableKnowsTheThicknessPriorToo) {
+TEST(Likelihood, TheTableKnowsTheDepthPriorToo) {
   for (const double tau : {0.02, 0.1, 1.0}) {
     const SensorModel sensor{gaussianNoise(), {0.01, 0, 0}, kNear, kFar, tau};
     const LikelihoodRatio table(sensor);

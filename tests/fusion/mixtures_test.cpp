@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fusion/half_normal.h"
-#include "fusion/two_class_em.h"
+#include "fusion/outlier_em.h"
 #include "vdbfuse/base/random.h"
 
 namespace vdbfuse {
@@ -56,53 +56,57 @@ TEST(HalfNormal, TheLikelihoodPrefersTheRightScaling) {
   EXPECT_GT(fitHalfNormal(divided).log_likelihood + jacobian, fitHalfNormal(raw).log_likelihood + 50);
 }
 
-// Two observations of three and four values. Each class has values of its own in both: without them two
-// observations do not determine a mixture.
+// Pixels of two kinds with different shares of outliers. The neighbours' answer is three-valued; of the
+// confidence's two bins outliers prefer the lower one.
 struct Planted {
-  double share = 0.25;
-  std::array<double, 3> good_a = {0, 0.3, 0.7}, bad_a = {0.7, 0.3, 0};
-  std::array<double, 4> good_b = {0, 0.2, 0.3, 0.5}, bad_b = {0.7, 0.2, 0.1, 0};
-  double bad(std::size_t a, std::size_t b) const { return share * bad_a.at(a) * bad_b.at(b); }
-  double good(std::size_t a, std::size_t b) const { return (1 - share) * good_a.at(a) * good_b.at(b); }
+  std::array<double, 2> share = {0.02, 0.6};
+  std::array<double, 3> good = {0.1, 0.2, 0.7}, bad = {0.7, 0.25, 0.05};
+  std::array<double, 2> good_confidence = {0.3, 0.7}, bad_confidence = {0.8, 0.2};
+
+  std::vector<OutlierCell> cells(double sharpness = 1.0) const {
+    std::vector<OutlierCell> result;
+    for (std::size_t kind = 0; kind < 2; ++kind)
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t c = 0; c < 2; ++c) {
+          const double wrong = share.at(kind) * bad.at(a) * bad_confidence.at(c);
+          const double right = (1 - share.at(kind)) * good.at(a) * good_confidence.at(c);
+          result.push_back({1e6 * (wrong + right), std::pow(bad.at(a) / good.at(a), sharpness), kind, c});
+        }
+    return result;
+  }
 };
 
-TEST(TwoClassEm, APlantedModelIsRecoveredFromItsExpectedCounts) {
+TEST(OutlierEm, PlantedSharesAndConfidencesAreRecovered) {
   const Planted truth;
-  JointCounts joint({3, 4});
-  std::vector<double> start;
-  for (std::size_t a = 0; a < 3; ++a)
-    for (std::size_t b = 0; b < 4; ++b) {
-      joint.counts[joint.index(std::array{a, b})] = 1e6 * (truth.good(a, b) + truth.bad(a, b));
-      start.push_back(a >= 1 && b >= 2 ? 0.0 : 1.0);
-    }
-  const TwoClassModel model = fitTwoClasses(joint, start);
-  EXPECT_NEAR(model.outlier_share, truth.share, 0.02);
-  for (std::size_t a = 0; a < 3; ++a) {
-    EXPECT_NEAR(model.inlier[0][a], truth.good_a.at(a), 0.03);
-    for (std::size_t b = 0; b < 4; ++b) {
-      const double all = truth.bad(a, b) + truth.good(a, b);
-      if (all > 0) {
-        EXPECT_NEAR(model.outlierGiven(std::array{a, b}), truth.bad(a, b) / all, 0.05);
-      }
-    }
+  const OutlierModel model = fitOutliers(truth.cells(), 2, 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(model.share_by_kind[i], truth.share.at(i), 0.01);
+    EXPECT_NEAR(model.confidence_ratio[i], truth.bad_confidence.at(i) / truth.good_confidence.at(i), 0.05);
   }
 }
 
-TEST(TwoClassEm, EveryStepEndsInProbabilities) {
-  JointCounts joint({2, 2});
-  joint.counts = {0, 0, 0, 100};
-  const TwoClassModel model = fitTwoClasses(joint, {1, 1, 1, 0});
-  EXPECT_LT(model.outlierGiven(std::array<std::size_t, 2>{1, 1}), 0.05);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double p = model.outlierGiven(std::array{k / 2, k % 2});
+TEST(OutlierEm, RatiosKnownRoughlyAreEnough) {
+  const Planted truth;
+  for (const double sharpness : {0.75, 1.4}) {
+    const OutlierModel model = fitOutliers(truth.cells(sharpness), 2, 2);
+    EXPECT_LT(model.share_by_kind[0], 0.08) << sharpness;
+    EXPECT_NEAR(model.share_by_kind[1], 0.6, 0.1) << sharpness;
+  }
+}
+
+TEST(OutlierEm, WhereNothingSpeaksAgainstThereAreNoOutliers) {
+  // Most pixels of few clean views are seen by nobody else.
+  const OutlierModel model = fitOutliers({{9e5, 1.0, 0, 0}, {1e5, 0.05, 0, 0}, {100, 50.0, 0, 0}}, 1, 1);
+  EXPECT_LT(model.share_by_kind[0], 0.02);
+  EXPECT_LT(model.outlierGiven(1.0, 0, 0), 0.02);
+}
+
+TEST(OutlierEm, WithoutPixelsEverythingIsAProbability) {
+  const OutlierModel model = fitOutliers({}, 3, 2);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double p = model.outlierGiven(200.0, k, k % 2);
     EXPECT_TRUE(p > 0 && p < 1);
   }
-}
-
-TEST(JointCounts, IndexAndValuesAreInverse) {
-  const JointCounts joint({3, 4, 5});
-  ASSERT_EQ(joint.counts.size(), 60u);
-  for (std::size_t k = 0; k < 60; ++k) EXPECT_EQ(joint.index(joint.values(k)), k);
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ TEST(NoiseModel, WhatIsWrongIsAllReported) {
   model.far = 0.5, model.noise.constant = 0;
   EXPECT_EQ(validate(model).size(), 2u);
   model.far = std::numeric_limits<double>::quiet_NaN();
-  model.thickness = -1;
+  model.prior_decay = -1;
   EXPECT_EQ(validate(model).size(), 3u);
 }
 

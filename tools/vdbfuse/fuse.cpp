@@ -66,6 +66,9 @@ void addEnergyOptions(CLI::App& app, Request& r) {
                  "How far behind a measured surface solid is to be expected, length; auto: 0.22 "
                  "of the domain's diagonal; off: any distance alike")
       ->capture_default_str();
+  app.add_option("--depth-prior", o.prior_decay,
+                 "Decay length of the prior of the depth behind which a point is hidden; default: flat")
+      ->check(CLI::PositiveNumber);
   app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.3/voxel")
       ->check(CLI::PositiveNumber);
   app.add_option("--mask-error", o.evidence.mask_error, "Share of the pixels of masks that are wrong")

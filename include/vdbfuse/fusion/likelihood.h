@@ -33,6 +33,7 @@ struct Measurement {
 /// [near, far]:
 ///   A = [(1−ε)(F((far−D)/s) − F((d−D)/s)) + ε(1−t)]/(1−t),  B = [(1−ε)(F((d−D)/s) − F((near−D)/s)) + ε t]/t,
 ///   t = (d − near)/(far − near), kept within [0.001, 0.999] together with d;  L = A/B.
+/// With sensor.prior_decay = τ > 0, B has D* ~ exp(−(d − D*)/τ) on [near, d] in place of the uniform one.
 /// With an infinite range t/(1 − t) has no meaning and is left out (Curless–Levoy); ε must then be 0.
 double logLikelihoodRatio(const SensorModel& sensor, const Measurement& measurement, double depth);
 

@@ -39,7 +39,8 @@ struct ReconstructOptions {
   std::optional<NoiseLaw> noise;  ///< of a known sensor; default: from overlapping views
   double noise_scale = 0.0;       ///< standard deviation at the median depth; default: from overlapping views
   std::optional<double>
-      outliers;  ///< outlier share, the same for every pixel; default: judged pixel by pixel
+      outliers;              ///< outlier share, the same for every pixel; default: judged pixel by pixel
+  double prior_decay = 0.0;  ///< τ of the depth prior (SensorModel::prior_decay), length; 0: flat
   JudgeOptions judge;
 
   // The energy.

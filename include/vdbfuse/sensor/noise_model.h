@@ -80,6 +80,9 @@ struct SensorModel {
   /// is an outlier.
   double near = 0.0;
   double far = 0.0;
+  /// τ of the depth prior p(D* | x inside) ∝ exp(−(d − D*)/τ): far behind a surface there is less and less
+  /// reason to be inside. Length; 0: flat.
+  double prior_decay = 0.0;
 };
 
 /// Everything that is wrong with a model, one sentence each.
