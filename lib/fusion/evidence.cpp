@@ -30,9 +30,9 @@ class Combiner {
   // out[i] = evidence at points[i]; at most a block of them.
   void combine(std::span<const Eigen::Vector3d> points, float* out) const {
     const PointBlock block(points);
-    std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()),
+    std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()), heard(points.size()),
         empties(points.size()), masked(points.size());
-    const TestimonySums sums{nodes, reports, empties, masked};
+    const TestimonySums sums{nodes, reports, heard, empties, masked};
     for (const PreparedView& view : views_)
       sum_.add(view, block, static_cast<float>(view.view->weight), sums);
     sum_.finish(sums, out);

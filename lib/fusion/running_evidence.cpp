@@ -35,11 +35,12 @@ struct RunningEvidence::Impl {
         sum(sensor, options.miss_rate, usable(options.evidence), options.most_views),
         nodes(origins.size() * kLeaf * sum.nodeCount()),
         reports(origins.size() * kLeaf),
+        heard(origins.size() * kLeaf),
         empties(origins.size() * kLeaf),
         masked(origins.size() * kLeaf) {}
 
   TestimonySums leaf(std::size_t index) { return sums().part(index * kLeaf, kLeaf); }
-  TestimonySums sums() { return {nodes, reports, empties, masked}; }
+  TestimonySums sums() { return {nodes, reports, heard, empties, masked}; }
 
   void accumulate(const JudgedView& view, float weight) {
     const PreparedView prepared(view, sensor);
@@ -57,7 +58,7 @@ struct RunningEvidence::Impl {
   GridFrame frame;
   std::vector<Index3> origins;
   TestimonySum sum;
-  std::vector<float> nodes, reports, empties, masked;
+  std::vector<float> nodes, reports, heard, empties, masked;
 };
 
 RunningEvidence::RunningEvidence(const SensorModel& sensor, const GridFrame& frame,

@@ -43,7 +43,7 @@ Measurement measurementAt(const PreparedView& prepared, std::size_t pixel) {
 TestimonySums TestimonySums::part(std::size_t first, std::size_t count) const {
   const std::size_t per_point = nodes.size() / reports.size();
   return {nodes.subspan(first * per_point, count * per_point), reports.subspan(first, count),
-          empties.subspan(first, count), masked.subspan(first, count)};
+          heard.subspan(first, count), empties.subspan(first, count), masked.subspan(first, count)};
 }
 
 TestimonySum::TestimonySum(const SensorModel& sensor, double miss_rate, const EvidenceOptions& options,
@@ -79,6 +79,7 @@ void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& bl
   accumulate(integral_, said, weight, block.size, sums.nodes.data());
   for (std::size_t i = 0; i < block.size; ++i) {
     sums.reports[i] += weight * said.share[i];
+    if (said.share[i] > 0) sums.heard[i] += weight;
     if (seen.pixel[i] < 0 || said.share[i] != 0) continue;
     const Look look = prepared.view->look.data()[seen.pixel[i]];
     if (look == Look::Empty) sums.empties[i] += weight;
@@ -131,8 +132,10 @@ void TestimonySum::finishOutside(const TestimonySums& sums, float* evidence) con
     if (masked > unconfirmed) integral_.add(mask_, masked - unconfirmed, node);
   }
   logMeans(integral_, nodes.data(), count, evidence);
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i) {
     evidence[i] += static_cast<float>(std::min(options_.prior, integral_.halfDenial(sums.reports[i])));
+    if (evidence[i] < 0) evidence[i] *= sums.reports[i] / std::max(sums.heard[i], sums.reports[i] + 1e-6f);
+  }
 }
 
 // Without self-occlusion a view that leaves the point out counts with its whole ratio, but for the first one.

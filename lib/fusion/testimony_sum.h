@@ -14,6 +14,7 @@ namespace vdbfuse {
 struct TestimonySums {
   std::span<float> nodes;    ///< nodeCount() a point
   std::span<float> reports;  ///< Σ w share of the views that measured something
+  std::span<float> heard;    ///< Σ w of the same
   std::span<float> empties;  ///< Σ w of the views whose sensor met nothing
   std::span<float> masked;   ///< Σ w of the views whose silhouette leaves the point out
 

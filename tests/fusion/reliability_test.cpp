@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "fusion/pixel_testimony.h"
 #include "fusion/scenes.h"
@@ -30,8 +32,12 @@ struct Planted {
       if (kind != Confidence::None) map.confidence = Image<float>(64, 64);
       for (std::size_t p = 0; p < map.depth.size(); ++p) {
         float& d = map.depth.data()[p];
-        const bool bad = d != kInvalidDepth && random.uniform() < share;
+        const float truth = d;
+        bool bad = d != kInvalidDepth && random.uniform() < share;
         if (bad) d = static_cast<float>(random.uniform(1.4, 2.6));
+        // A mistake within 3 combined standard deviations of two views is none.
+        const double noise = lookupNoise(sensor, views[i].projection, truth);
+        bad = bad && std::abs(d - truth) > 3 * std::numbers::sqrt2 * noise;
         is_outlier.back().data()[p] = bad;
         if (kind == Confidence::None) continue;
         const double quality = kind == Confidence::Noise  ? 0

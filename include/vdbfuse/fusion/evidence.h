@@ -38,8 +38,9 @@ struct EvidenceOptions {
   /// (1−v)ⁿ dv).
   double prior = 0.75;
   /// τ: how far behind a measured surface the same solid is to be expected, length; 0: at any distance alike.
-  /// At δ behind its measurement a view counts as e^(−(δ/τ)²) of a view, in the product and in b: from far
-  /// behind it knows only that something is in between. Rule Outside.
+  /// At δ behind its measurement a view counts as g = e^(−(δ/τ)²) of a view, in the product and in b: from
+  /// far behind it knows only that something is in between. Where e < 0 it is multiplied by the views' mean
+  /// of g besides, so that the shadow of many views does not reach further than that of few. Rule Outside.
   double thickness = 0.0;
   /// Inflation of constant ballooning, log-odds.
   double balloon = 1.0;

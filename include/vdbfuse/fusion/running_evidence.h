@@ -15,7 +15,7 @@ struct RunningEvidenceOptions {
   EvidenceOptions evidence;
   double miss_rate = 0.5;  ///< of the sensor, for no-returns (JudgedViews::miss_rate)
   /// Σ of the weights of the views that will be in the sum at the same time, at most; more of them blur the
-  /// smallest visibilities. Memory a voxel: 4 (3 + nodes) bytes, nodes = 8 up to 256 views with the default
+  /// smallest visibilities. Memory a voxel: 4 (4 + nodes) bytes, nodes = 8 up to 256 views with the default
   /// prior.
   double most_views = 256;
 };
