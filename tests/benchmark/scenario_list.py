@@ -92,6 +92,8 @@ PARTS = {
     "no-denial": lambda scenario, size, default: ["--no-denial"],
     # One v in place of Beta(v; a, 1): two or three views in all are expected to see a point.
     "one-v": lambda scenario, size, default: ["--visibility", f"{2.5 / scenario.views:.6g}"],
+    # Denial at any distance behind a surface.
+    "no-thickness": lambda scenario, size, default: ["--thickness", "off"],
     "no-return-off": lambda scenario, size, default: ["--no-return", "ignore"],
     # Who knows nothing of the sensor takes one voxel for its noise: 2.7 (small) and 1.3 (full) times the truth.
     "no-calibration": lambda scenario, size, default: ["--noise-scale", f"{size.voxel:g}"],

@@ -69,7 +69,7 @@ void addEnergyOptions(CLI::App& app, Request& r) {
   app.add_option("--depth-prior", o.prior_decay,
                  "Decay length of the prior of the depth behind which a point is hidden; default: flat")
       ->check(CLI::PositiveNumber);
-  app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.5/voxel")
+  app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.6/voxel")
       ->check(CLI::PositiveNumber);
   app.add_option("--mask-error", o.evidence.mask_error, "Share of the pixels of masks that are wrong")
       ->check(CLI::Range(1e-6, 0.499))

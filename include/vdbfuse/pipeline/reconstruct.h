@@ -48,7 +48,7 @@ struct ReconstructOptions {
   double mu = 2.0;  ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
   /// EvidenceOptions::thickness; default: 0.22 × diagonal of the domain.
   std::optional<double> thickness;
-  double lambda = 0.0;  ///< weight of σ, 1/length; default 0.5/max(voxel, median noise)
+  double lambda = 0.0;  ///< weight of σ, 1/length; default 0.6/max(voxel, median noise)
 
   // The surface.
   double smoothing_voxels = 1.0;
