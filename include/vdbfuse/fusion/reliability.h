@@ -46,17 +46,21 @@ struct JudgeOptions {
   std::optional<Box> domain;
 };
 
-/// Two-class EM (inlier, outlier) over observations that are independent given the class, histograms, no
-/// parametric form: the confidence (20 quantile bins), and a cell of *agreement* (neighbour views that
-/// measured the same point, with normals within 45°), *contradiction* (neighbours that see past it) and
-/// *continuity* (share of the 5×5 neighbourhood on the same surface). Without confidence, or where it turns
-/// out to say nothing, continuity is an observation of its own.
-/// Then one step of Bayes' rule, outside the EM, with *denial*: the smallest evidence of all other views
-/// where the pixel claims free space. Alternative depths are judged as if they were views of their own,
-/// without denial, and compete; the likeliest becomes the depth. Starts from: two or more agree and the
-/// surface continues = inlier; contradicted by more than agree = outlier; nobody speaks for or against =
-/// undecided, because only evidence against condemns. Takes the views' images over. `sensor`: its noise and
-/// range. Throws InvalidArgument when nothing is supported.
+/// Odds of an outlier are a product of what is observed and independent given the class:
+///  - the share of outliers among the pixels of the same *continuity* (share of the 5×5 neighbourhood on the
+///    same surface), learned by EM;
+///  - what the neighbour views answer: *agreement* (they measured the same point, with normals within 45°),
+///    *contradiction* (they see past it), and, where there is neither, *occlusion* although the surface faces
+///    them and *misses*; as likelihood ratios known beforehand to an order of magnitude;
+///  - the *confidence*, in 20 quantile bins, whose ratios are learned by the same EM: any scale, either
+///    direction, no harm where it says nothing;
+///  - *denial*, the smallest evidence of all other views where the pixel claims free space: one step of
+///  Bayes'
+///    rule after the EM.
+/// Only evidence against condemns: a pixel of which nobody says anything gets the share of its kind.
+/// Alternative depths are judged as if they were views of their own, without denial, and compete; the
+/// likeliest becomes the depth. Takes the views' images over. `sensor`: its noise and range. Throws
+/// InvalidArgument when nothing is supported.
 Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
                 const JudgeOptions& options = {}, const Progress& progress = {});
 
