@@ -26,7 +26,8 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   const std::vector<CellFace> faces = cellFaces(octree);
 
   timer.start("evidence");
-  std::vector<float> sigma = evidence(judged, octree, evidenceOptions(domain, options), progress);  // σ(x)
+  const EvidenceOptions evidence_options = evidenceOptions(domain, options);
+  std::vector<float> sigma = evidence(judged, octree, evidence_options, progress);  // σ(x)
 
   timer.start("cut");
   const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
@@ -43,8 +44,15 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   describeVertices(support, result);
 
   result.grid = describeGrid(octree, support, domain);
-  result.cut = CutReportSummary{cut.flow,   cut.certified,      cut.nodes,          cut.arcs,
-                                cut.energy, cut_options.lambda, cut_options.border, cavities};
+  result.cut = CutReportSummary{cut.flow,
+                                cut.certified,
+                                cut.nodes,
+                                cut.arcs,
+                                cut.energy,
+                                cut_options.lambda,
+                                evidence_options.thickness,
+                                cut_options.border,
+                                cavities};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids = levelGrids(octree, sigma, "sigma", static_cast<float>(options.evidence.prior));
   result.grids.push_back(discontinuityCost(support, options.mu));

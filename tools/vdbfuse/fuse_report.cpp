@@ -47,8 +47,12 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"prior", o.evidence.prior},
             {"balloon", o.evidence.balloon},
             {"mask_error", o.evidence.mask_error},
+            {"depth_prior", o.prior_decay},
             {"mu", o.mu}};
-  if (result.cut) j.update({{"lambda", result.cut->lambda}, {"border", nameOf(result.cut->border)}});
+  if (result.cut)
+    j.update({{"lambda", result.cut->lambda},
+              {"thickness", result.cut->thickness},
+              {"border", nameOf(result.cut->border)}});
   return j;
 }
 

@@ -93,6 +93,7 @@ struct CutReportSummary {
   std::size_t nodes = 0, arcs = 0;
   CutEnergy energy;
   double lambda = 0;
+  double thickness = 0;  ///< EvidenceOptions::thickness; 0: off
   Border border = Border::Outside;
   CavityReport cavities;
 };
