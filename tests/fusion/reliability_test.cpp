@@ -78,10 +78,8 @@ TEST_P(EveryConfidence, PlantedOutliersAreFoundAndInliersKept) {
   const Judgement judgement = planted.judged();
   const auto [found, lost] = planted.foundAndLost(judgement);
   EXPECT_GT(found, 0.9);
-  // A confidence that is pure chance takes the place of the continuity: the rim of the sphere is lost, too.
-  const double slack = GetParam().first == Confidence::Noise ? 0.1 : 0.0;
-  EXPECT_LT(lost, 0.05 + slack);
-  EXPECT_NEAR(judgement.model.outlier_share, 0.12, 0.04 + slack);
+  EXPECT_LT(lost, 0.05);
+  EXPECT_NEAR(judgement.model.outlier_share, 0.12, 0.04);
   EXPECT_EQ(confidenceDirection(judgement.model), GetParam().second);
 }
 
