@@ -121,8 +121,8 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
     const FloatVec odds = hn::Div(hn::Mul(a, t), hn::Mul(b, rest));
     hn::Store(hn::IfThenElseZero(valid, hn::Log(df, odds)), df, &testimony.log_ratio[i]);
     const FloatVec behind = hn::Sub(depth, measured);
-    const bool all_before = hn::AllTrue(df, hn::Lt(behind, zero));
-    hn::Store(hn::IfThenElseZero(valid, all_before ? one : nearness(behind, per_thickness)), df,
+    const bool whole = thickness <= 0 || hn::AllTrue(df, hn::Lt(behind, zero));
+    hn::Store(hn::IfThenElseZero(valid, whole ? one : nearness(behind, per_thickness)), df,
               &testimony.share[i]);
   }
 }

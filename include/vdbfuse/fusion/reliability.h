@@ -54,9 +54,8 @@ struct JudgeOptions {
 ///    them and *misses*; as likelihood ratios known beforehand to an order of magnitude;
 ///  - the *confidence*, in 20 quantile bins, whose ratios are learned by the same EM: any scale, either
 ///    direction, no harm where it says nothing;
-///  - *denial*, the smallest evidence of all other views where the pixel claims free space: one step of
-///  Bayes'
-///    rule after the EM.
+///  - *denial*, the smallest evidence of all other views where the pixel claims free space, by one step of
+///    Bayes' rule after the EM.
 /// Only evidence against condemns: a pixel of which nobody says anything gets the share of its kind.
 /// Alternative depths are judged as if they were views of their own, without denial, and compete; the
 /// likeliest becomes the depth. Takes the views' images over. `sensor`: its noise and range. Throws
