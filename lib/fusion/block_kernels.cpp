@@ -79,47 +79,94 @@ FloatVec nearness(FloatVec behind, FloatVec per_thickness) {
   return hn::Exp(df, hn::Neg(hn::Mul(far, far)));
 }
 
+// What pixels with a single hypothesis and a flat depth prior say of points on their rays.
+class SingleHypothesis {
+ public:
+  SingleHypothesis(const PreparedView& view, const LikelihoodRatio& ratio)
+      : ratio_(ratio),
+        noise_bound_(view.noise),
+        cdf_(ratio.table(), -LikelihoodRatio::kReach, LikelihoodRatio::kSteps / (2 * LikelihoodRatio::kReach),
+             LikelihoodRatio::kSteps),
+        noise_(view.noise.values(), view.noise.near(), view.noise.perStep(), NoiseTable::kSteps) {}
+
+  // L as a fraction.
+  struct Fraction {
+    FloatVec above, below;
+  };
+
+  // `depth` is clamped to the range; `measured` is 0 where nothing was, and the fraction is arbitrary there.
+  Fraction operator()(FloatVec measured, FloatVec outlier, FloatVec depth) const {
+    const Floats df;
+    const FloatVec t = hn::Mul(hn::Sub(depth, hn::Set(df, ratio_.near())), hn::Set(df, ratio_.perRange()));
+    const float furthest = hn::GetLane(hn::MaxOfLanes(df, measured));
+    const FloatVec reach = hn::Set(df, ratio_.reach() * noise_bound_.boundUpTo(furthest));
+    const auto missing = hn::Le(measured, hn::Zero(df));
+    const auto inner = hn::Or(missing, hn::And(hn::Gt(hn::Sub(measured, hn::Set(df, ratio_.near())), reach),
+                                               hn::Gt(hn::Sub(hn::Set(df, ratio_.far()), measured), reach)));
+    const bool is_inner = hn::AllTrue(df, inner);
+    const auto clear = hn::Or(missing, hn::Gt(hn::Abs(hn::Sub(depth, measured)), reach));
+    if (is_inner && hn::AllTrue(df, clear)) return clearly(measured, outlier, depth, t);
+    return closely(measured, outlier, depth, t, is_inner);
+  }
+
+ private:
+  // Far from its measurement a point is before or behind it whatever the noise: F is 0 or 1.
+  Fraction clearly(FloatVec measured, FloatVec outlier, FloatVec depth, FloatVec t) const {
+    const Floats df;
+    const FloatVec one = hn::Set(df, 1.0f);
+    const FloatVec nearer = hn::Mul(outlier, t), further = hn::Sub(outlier, nearer);
+    const auto is_behind = hn::Gt(depth, measured);
+    return {hn::IfThenElse(is_behind, nearer, hn::Sub(one, nearer)),
+            hn::IfThenElse(is_behind, hn::Sub(one, further), further)};
+  }
+
+  // `is_inner`: no measurement lies so near to an end of the range that its edge is felt.
+  Fraction closely(FloatVec measured, FloatVec outlier, FloatVec depth, FloatVec t, bool is_inner) const {
+    const Floats df;
+    const FloatVec one = hn::Set(df, 1.0f), zero = hn::Zero(df);
+    const FloatVec per_noise = hn::Div(one, noise_(measured));
+    const auto cdf = [&](FloatVec d) { return cdf_(hn::Mul(hn::Sub(d, measured), per_noise)); };
+    const FloatVec before = cdf(depth);
+    const FloatVec below = is_inner ? zero : cdf(hn::Set(df, ratio_.near()));
+    const FloatVec above = is_inner ? one : cdf(hn::Set(df, ratio_.far()));
+    const FloatVec inlier = hn::Sub(one, outlier), rest = hn::Sub(one, t);
+    const FloatVec a = hn::MulAdd(inlier, hn::Max(hn::Sub(above, before), zero), hn::Mul(outlier, rest));
+    const FloatVec b = hn::MulAdd(inlier, hn::Max(hn::Sub(before, below), zero), hn::Mul(outlier, t));
+    return {hn::Mul(a, t), hn::Mul(b, rest)};
+  }
+
+  const LikelihoodRatio& ratio_;
+  const NoiseTable& noise_bound_;
+  Table cdf_, noise_;
+};
+
 void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
                    const BlockLook& look, std::size_t size, BlockTestimony& testimony) {
   const Floats df;
   const Ints di;
   const float* depths = view.view->depth.data();
   const float* outliers = view.view->outlier.data();
-  constexpr float kReach = LikelihoodRatio::kReach;
-  const Table cdf(ratio.table(), -kReach, LikelihoodRatio::kSteps / (2 * kReach), LikelihoodRatio::kSteps);
-  const Table noise(view.noise.values(), view.noise.near(), view.noise.perStep(), NoiseTable::kSteps);
-  const FloatVec near = hn::Set(df, ratio.near()), far = hn::Set(df, ratio.far());
+  const SingleHypothesis likelihood(view, ratio);
   const FloatVec first = hn::Set(df, ratio.clampDepth(ratio.near())),
                  last = hn::Set(df, ratio.clampDepth(ratio.far()));
-  const FloatVec one = hn::Set(df, 1.0f), zero = hn::Zero(df), reach = hn::Set(df, kReach);
+  const FloatVec one = hn::Set(df, 1.0f), zero = hn::Zero(df);
   const FloatVec per_thickness = hn::Set(df, thickness > 0 ? 1 / thickness : 0.0f);
   for (std::size_t i = 0; i < size; i += hn::Lanes(df)) {
     const IntVec pixel = hn::Load(di, &look.pixel[i]);
-    const FloatVec found = hn::GatherIndex(df, depths, hn::Max(pixel, hn::Zero(di)));
-    const auto valid = hn::And(hn::RebindMask(df, hn::Gt(pixel, hn::Set(di, -1))), hn::Gt(found, zero));
+    const auto seen = hn::RebindMask(df, hn::Gt(pixel, hn::Set(di, -1)));
+    const IntVec place = hn::Max(pixel, hn::Zero(di));
+    const FloatVec measured = hn::IfThenElseZero(seen, hn::GatherIndex(df, depths, place));
+    const auto valid = hn::Gt(measured, zero);
     if (hn::AllFalse(df, valid)) {
       hn::Store(zero, df, &testimony.log_ratio[i]);
       hn::Store(zero, df, &testimony.share[i]);
       continue;
     }
-    const FloatVec measured = hn::IfThenElse(valid, found, far);
-    const FloatVec outlier = hn::GatherIndex(df, outliers, hn::Max(pixel, hn::Zero(di)));
-    const FloatVec inlier = hn::Sub(one, outlier);
-    const FloatVec per_noise = hn::Div(one, noise(measured));
+    const FloatVec outlier = hn::GatherIndex(df, outliers, place);
     const FloatVec depth = hn::Min(hn::Max(hn::Load(df, &look.depth[i]), first), last);
-    const FloatVec t = hn::Mul(hn::Sub(depth, near), hn::Set(df, ratio.perRange()));
-    const FloatVec before = cdf(hn::Mul(hn::Sub(depth, measured), per_noise));
-    const FloatVec start = hn::Mul(hn::Sub(measured, near), per_noise);
-    const FloatVec end = hn::Mul(hn::Sub(far, measured), per_noise);
-    // Few measurements lie so near to an end of the range that its edge is felt.
-    const bool felt =
-        !hn::AllTrue(df, hn::Or(hn::Not(valid), hn::And(hn::Gt(start, reach), hn::Gt(end, reach))));
-    const FloatVec below = felt ? cdf(hn::Neg(start)) : zero, above = felt ? cdf(end) : one;
-    const FloatVec rest = hn::Sub(one, t);
-    const FloatVec a = hn::MulAdd(inlier, hn::Max(hn::Sub(above, before), zero), hn::Mul(outlier, rest));
-    const FloatVec b = hn::MulAdd(inlier, hn::Max(hn::Sub(before, below), zero), hn::Mul(outlier, t));
-    const FloatVec odds = hn::Div(hn::Mul(a, t), hn::Mul(b, rest));
-    hn::Store(hn::IfThenElseZero(valid, hn::Log(df, odds)), df, &testimony.log_ratio[i]);
+    const auto odds = likelihood(measured, outlier, depth);
+    hn::Store(hn::IfThenElseZero(valid, hn::Log(df, hn::Div(odds.above, odds.below))), df,
+              &testimony.log_ratio[i]);
     const FloatVec behind = hn::Sub(depth, measured);
     const bool whole = thickness <= 0 || hn::AllTrue(df, hn::Lt(behind, zero));
     hn::Store(hn::IfThenElseZero(valid, whole ? one : nearness(behind, per_thickness)), df,
@@ -147,6 +194,7 @@ void accumulateNodes(const VisibilityIntegral& integral, const BlockTestimony& t
 void logMeansOfNodes(const VisibilityIntegral& integral, const float* sums, std::size_t size, float* out) {
   const hn::CappedTag<float, 8> d;
   const std::size_t nodes = static_cast<std::size_t>(integral.nodeCount());
+  alignas(64) std::array<float, PointBlock::kCapacity> peaks, totals;
   for (std::size_t i = 0; i < size; ++i, sums += nodes) {
     auto largest = hn::LoadU(d, sums);
     for (std::size_t k = hn::Lanes(d); k < nodes; k += hn::Lanes(d))
@@ -155,8 +203,15 @@ void logMeansOfNodes(const VisibilityIntegral& integral, const float* sums, std:
     auto sum = hn::Zero(d);
     for (std::size_t k = 0; k < nodes; k += hn::Lanes(d))
       sum = hn::Add(sum, hn::Exp(d, hn::Sub(hn::LoadU(d, sums + k), largest)));
-    out[i] = hn::GetLane(largest) + std::log(hn::GetLane(hn::SumOfLanes(d, sum)) / static_cast<float>(nodes));
+    peaks[i] = hn::GetLane(largest), totals[i] = hn::GetLane(hn::SumOfLanes(d, sum));
   }
+  std::fill(peaks.begin() + static_cast<std::ptrdiff_t>(size), peaks.end(), 0.0f);
+  std::fill(totals.begin() + static_cast<std::ptrdiff_t>(size), totals.end(), 1.0f);
+  const auto share = hn::Set(d, 1.0f / static_cast<float>(nodes));
+  for (std::size_t i = 0; i < size; i += hn::Lanes(d))
+    hn::Store(hn::Add(hn::Load(d, &peaks[i]), hn::Log(d, hn::Mul(hn::Load(d, &totals[i]), share))), d,
+              &peaks[i]);
+  std::copy_n(peaks.begin(), size, out);
 }
 
 const char* targetName() { return hwy::TargetName(HWY_TARGET); }
@@ -176,10 +231,10 @@ HWY_EXPORT(logMeansOfNodes);
 HWY_EXPORT(targetName);
 
 // Any projection, a point at a time.
-void lookAny(const PreparedView& view, const PointBlock& block, BlockLook& look) {
+void lookAny(const Projector& projector, const PointBlock& block, BlockLook& look) {
   for (std::size_t i = 0; i < block.size; ++i) {
-    const std::optional<Sighting> seen = view.projector(block.point(i));
-    look.pixel[i] = seen ? seen->y * view.view->depth.width() + seen->x : -1;
+    const std::optional<Sighting> seen = projector(block.point(i));
+    look.pixel[i] = seen ? seen->y * projector.width() + seen->x : -1;
     look.depth[i] = seen ? static_cast<float>(seen->depth) : 0.0f;
   }
 }
@@ -207,15 +262,26 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, floa
 
 }  // namespace
 
-BlockLook look(const PreparedView& view, const PointBlock& block) {
+BlockLook look(const Projector& projector, const PointBlock& block) {
   BlockLook result;
-  if (const std::optional<PinholeRows> rows = view.projector.rowsFrom(block.origin)) {
+  if (const std::optional<PinholeRows> rows = projector.rowsFrom(block.origin)) {
     HWY_DYNAMIC_DISPATCH(lookPinhole)(*rows, block, result);
     // Vectors reach past the last point.
     return result;
   }
-  lookAny(view, block, result);
+  lookAny(projector, block, result);
   std::fill(result.pixel.begin() + static_cast<std::ptrdiff_t>(block.size), result.pixel.end(), -1);
+  return result;
+}
+
+void prefetch(const float* image, const BlockLook& look, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) __builtin_prefetch(image + std::max(look.pixel[i], 0));
+}
+
+BlockLook look(const PreparedView& view, const PointBlock& block) {
+  const BlockLook result = look(view.projector, block);
+  prefetch(view.view->depth.data(), result, block.size);
+  prefetch(view.view->outlier.data(), result, block.size);
   return result;
 }
 

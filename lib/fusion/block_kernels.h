@@ -11,6 +11,13 @@ namespace vdbfuse {
 
 /// Projects the points of a block. Pinholes without distortion: single precision, many points at a time; a
 /// point within 1e-4 pixels of the border between two pixels may be given to either.
+BlockLook look(const Projector& projector, const PointBlock& block);
+
+/// Starts loading the pixels of an image that were looked up: waiting for them is most of a kernel's time
+/// otherwise.
+void prefetch(const float* image, const BlockLook& look, std::size_t size);
+
+/// look(), and what testify() will read is on its way.
 BlockLook look(const PreparedView& view, const PointBlock& block);
 
 /// log L of every point whose pixel is measured: LikelihoodRatio of all its hypotheses. `thickness`: τ of
@@ -22,7 +29,8 @@ BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, f
 void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,
                 std::size_t size, float* sums);
 
-/// out[i] = log of the mean over the nodes of e^sums: VisibilityIntegral::logMean() of each point.
+/// out[i] = log of the mean over the nodes of e^sums: VisibilityIntegral::logMean() of each point, at
+/// most PointBlock::kCapacity of them.
 void logMeans(const VisibilityIntegral& integral, const float* sums, std::size_t size, float* out);
 
 /// Name of the instruction set in use.

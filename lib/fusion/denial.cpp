@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "fusion/block_kernels.h"
 #include "vdbfuse/base/parallel.h"
@@ -25,77 +26,147 @@ std::uint8_t denialBin(float evidence) {
                                    kBinEnds.begin());
 }
 
+// 8³ points of the grid. Views and rays that have nothing to do with them skip them whole.
+constexpr int kBrick = 8;
+
+struct Brick {
+  explicit Brick(std::vector<Eigen::Vector3d> brick_points)
+      : points(std::move(brick_points)), block(points), smallest(kNobodyDenies) {}
+
+  std::vector<Eigen::Vector3d> points;
+  PointBlock block;                                ///< of `points`
+  float sure = std::numeric_limits<float>::max();  ///< no less than this of any point, by all views
+  float smallest;                                  ///< of the points, without the view left out
+};
+
 // Sums over all views at the points of a regular grid, from which one view's own term can be taken away.
 class TestimonyGrid {
  public:
   TestimonyGrid(const JudgedViews& judged, const Box& domain)
       : low_(domain.min()),
         step_(domain.sizes().maxCoeff() / kDenialSide),
-        size_((domain.sizes() / step_).array().ceil().cast<int>().max(1)),
+        bricks_a_side_((domain.sizes() / (step_ * kBrick)).array().ceil().cast<int>().max(1)),
         views_(prepare(judged)),
         ratio_(judged.sensor),
-        integral_(0.5, 0.0, kViewsOfEightNodes) {}
+        integral_(0.5, 0.0, kViewsOfEightNodes) {
+    const int count = bricks_a_side_.prod();
+    bricks_.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) bricks_.emplace_back(pointsOf(i));
+  }
 
   double step() const { return step_; }
 
   void fill(const Progress& progress) {
-    const std::size_t count = static_cast<std::size_t>(size_.prod());
+    const std::size_t count = bricks_.size() * PointBlock::kCapacity;
     sums_.assign(count * kNodes, 0.0f);
     reports_.assign(count, 0.0f);
     without_.assign(count, 0.0f);
-    ProgressStep progress_step(progress, "weigh views", count);
-    forEachBlock([&](std::size_t first, const PointBlock& block) {
+    ProgressStep progress_step(progress, "weigh views", bricks_.size());
+    forEachBrick([&](Brick& brick, std::size_t first) {
       for (const PreparedView& view : views_)
-        add(view, block, static_cast<float>(view.view->weight), &sums_[first * kNodes], &reports_[first]);
-      progress_step.advance(block.size);
+        add(view, brick.block, static_cast<float>(view.view->weight), &sums_[first * kNodes],
+            &reports_[first]);
+      logMeans(integral_, &sums_[first * kNodes], PointBlock::kCapacity, &without_[first]);
+      brick.sure = smallestOf(first);
+      progress_step.advance();
     });
   }
 
-  // From now on smallestOnRay() is about what all views but this one say.
+  // From now on smallestOnRay() is about what all views but this one say, on rays of this one.
   void leaveOut(std::size_t view) {
-    forEachBlock([&](std::size_t first, const PointBlock& block) {
-      std::vector<float> sums(&sums_[first * kNodes], &sums_[first * kNodes] + block.size * kNodes);
-      std::vector<float> reports(&reports_[first], &reports_[first] + block.size);
-      add(views_[view], block, -kOwnWeight, sums.data(), reports.data());
+    forEachBrick([&](Brick& brick, std::size_t first) {
+      brick.smallest = kNobodyDenies;
+      if (brick.sure - kMostOfOneView > kNobodyDenies) return;
+      // A ray is nearest to points up to half a step outside the image.
+      if (!views_[view].projector.mightSee(brick.block.centre, brick.block.radius + step_)) return;
+      std::array<float, PointBlock::kCapacity * kNodes> sums;
+      std::array<float, PointBlock::kCapacity> reports;
+      std::copy_n(&sums_[first * kNodes], sums.size(), sums.begin());
+      std::copy_n(&reports_[first], reports.size(), reports.begin());
+      add(views_[view], brick.block, -kOwnWeight, sums.data(), reports.data());
       float* const evidence = &without_[first];
-      logMeans(integral_, sums.data(), block.size, evidence);
-      for (std::size_t i = 0; i < block.size; ++i)
+      logMeans(integral_, sums.data(), reports.size(), evidence);
+      for (std::size_t i = 0; i < reports.size(); ++i)
         evidence[i] +=
             static_cast<float>(std::min(kPriorOfOutside, integral_.halfDenial(std::max(reports[i], 0.0f))));
+      brick.smallest = smallestOf(first);
     });
   }
 
-  // Smallest evidence along the ray of a pixel, from the sensor to `end` (world).
+  // Smallest evidence along the ray of a pixel, from the sensor to `end` (world), no larger than
+  // kNobodyDenies.
   float smallestOnRay(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const {
     const Eigen::Vector3d way = end - start;
     const double length = way.norm();
     const auto [first, last] = insideDomain(start, way);
+    const Eigen::Vector3d low = (start - low_) / step_, pace = way / length;
     float smallest = kNobodyDenies;
-    for (double s = first * length; s <= last * length; s += step_)
-      smallest = std::min(smallest, without_[nearest(start + way * (s / length))]);
+    double s = first * length / step_;
+    while (s <= last * length / step_) {
+      const Eigen::Vector3d p = low + pace * s;
+      const Eigen::Array3i cell = p.array().cast<int>().max(0).min(kBrick * bricks_a_side_ - 1);
+      const Eigen::Array3i brick = cell / kBrick;
+      const std::size_t index = brickIndex(brick);
+      if (bricks_[index].smallest >= smallest) {
+        s += std::max(1.0, std::ceil(stepsToLeave(brick, p, pace)));
+        continue;
+      }
+      smallest = std::min(smallest, without_[index * PointBlock::kCapacity + placeInBrick(cell)]);
+      s += 1;
+    }
     return smallest;
   }
 
  private:
-  Eigen::Vector3d point(std::size_t i) const {
-    const int nx = size_.x(), ny = size_.y(), k = static_cast<int>(i);
-    return low_ + step_ * Eigen::Vector3d(k % nx + 0.5, k / nx % ny + 0.5, k / nx / ny + 0.5);
+  // log L of one view is never more: its pixel is wrong with kMinOutlier, and the point no nearer to the end
+  // of the range than LikelihoodRatio::kEnd.
+  static constexpr float kMostOfOneView = 12.8f;
+
+  static std::size_t placeInBrick(const Eigen::Array3i& cell) {
+    const Eigen::Array3i p = cell - cell / kBrick * kBrick;
+    return static_cast<std::size_t>((p.z() * kBrick + p.y()) * kBrick + p.x());
   }
 
-  std::size_t nearest(const Eigen::Vector3d& p) const {
-    const Eigen::Array3i cell = ((p - low_) / step_).array().floor().cast<int>().max(0).min(size_ - 1);
-    return static_cast<std::size_t>((cell.z() * size_.y() + cell.y()) * size_.x() + cell.x());
+  std::size_t brickIndex(const Eigen::Array3i& brick) const {
+    return static_cast<std::size_t>((brick.z() * bricks_a_side_.y() + brick.y()) * bricks_a_side_.x() +
+                                    brick.x());
   }
 
-  // visit(index of its first point, block), in parallel; each block has one owner.
+  std::vector<Eigen::Vector3d> pointsOf(int brick) const {
+    const int nx = bricks_a_side_.x(), ny = bricks_a_side_.y();
+    const Eigen::Vector3d first(brick % nx, brick / nx % ny, brick / nx / ny);
+    std::vector<Eigen::Vector3d> points;
+    for (int z = 0; z < kBrick; ++z) {
+      for (int y = 0; y < kBrick; ++y) {
+        for (int x = 0; x < kBrick; ++x)
+          points.emplace_back(low_ + step_ * (kBrick * first + Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5)));
+      }
+    }
+    return points;
+  }
+
+  // In grid steps along the ray.
+  static double stepsToLeave(const Eigen::Array3i& brick, const Eigen::Vector3d& p,
+                             const Eigen::Vector3d& pace) {
+    double steps = kBrick * 2;
+    for (int a = 0; a < 3; ++a) {
+      if (std::abs(pace[a]) < 1e-12) continue;
+      const double wall = kBrick * (brick[a] + (pace[a] > 0 ? 1 : 0));
+      steps = std::min(steps, (wall - p[a]) / pace[a]);
+    }
+    return steps;
+  }
+
+  float smallestOf(std::size_t first) const {
+    return *std::min_element(&without_[first], &without_[first] + PointBlock::kCapacity);
+  }
+
+  // visit(brick, index of its first point), in parallel; each brick has one owner.
   template <class Visit>
-  void forEachBlock(const Visit& visit) const {
-    parallelFor(static_cast<std::size_t>(size_.prod()), PointBlock::kCapacity,
-                [&](std::size_t begin, std::size_t end) {
-                  std::vector<Eigen::Vector3d> points;
-                  for (std::size_t i = begin; i < end; ++i) points.push_back(point(i));
-                  visit(begin, PointBlock(points));
-                });
+  void forEachBrick(const Visit& visit) {
+    parallelFor(bricks_.size(), 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) visit(bricks_[i], i * PointBlock::kCapacity);
+    });
   }
 
   // What the sums hold is what the pixel at the grid point said, which may be a neighbour of the one
@@ -112,7 +183,7 @@ class TestimonyGrid {
   std::pair<double, double> insideDomain(const Eigen::Vector3d& start, const Eigen::Vector3d& way) const {
     double first = 0, last = 1;
     for (int a = 0; a < 3; ++a) {
-      const double low = low_[a] - start[a], high = low + step_ * size_[a];
+      const double low = low_[a] - start[a], high = low + step_ * kBrick * bricks_a_side_[a];
       if (std::abs(way[a]) < 1e-12) {
         if (low > 0 || high < 0) return {1, 0};
         continue;
@@ -125,11 +196,12 @@ class TestimonyGrid {
 
   Eigen::Vector3d low_;
   double step_;
-  Eigen::Array3i size_;
+  Eigen::Array3i bricks_a_side_;
   std::vector<PreparedView> views_;
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
-  std::vector<float> sums_, reports_, without_;
+  std::vector<Brick> bricks_;
+  std::vector<float> sums_, reports_, without_;  ///< brick by brick
 };
 
 void examineRow(const TestimonyGrid& grid, const JudgedViews& judged, std::size_t index, int y,

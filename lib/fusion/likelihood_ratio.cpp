@@ -8,6 +8,8 @@ namespace {
 // is flat.
 constexpr double kFirstDecay = 1e-4, kLastDecay = 4.0;
 
+constexpr float kNothing = 1e-8f;
+
 double decayOf(int row, int rows) {
   return kFirstDecay * std::pow(kLastDecay / kFirstDecay, row / (rows - 1.0));
 }
@@ -38,6 +40,8 @@ LikelihoodRatio::LikelihoodRatio(const SensorModel& sensor)
   for (int i = 0; i <= kSteps + 1; ++i)
     cdf_.push_back(
         static_cast<float>(std::exp(sensor.shape.logSurvival(kReach - 2.0 * i / kSteps * kReach))));
+  const auto felt = std::find_if(cdf_.begin(), cdf_.end(), [](float f) { return f > kNothing; });
+  reach_ = kReach - 2 * kReach / kSteps * static_cast<float>(felt - cdf_.begin());
   if (!thick()) return;
   for (int row = 0; row < kDecays; ++row)
     decayed_.push_back(decayedCdf(cdf_, decayOf(row, kDecays), 2 * static_cast<double>(kReach) / kSteps));

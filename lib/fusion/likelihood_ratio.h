@@ -54,6 +54,8 @@ class LikelihoodRatio {
     return std::log(a / b);
   }
 
+  /// Beyond so many scales F differs from 0 or 1 by less than 1e-8.
+  float reach() const { return reach_; }
   bool thick() const { return prior_decay_ > 0; }
   /// F at kSteps + 2 places from −kReach to kReach and a step beyond.
   const float* table() const { return cdf_.data(); }
@@ -72,7 +74,7 @@ class LikelihoodRatio {
   float thick(const Peak& peak, float depth) const;
   float decayed(float u, float kappa) const;
 
-  float near_, far_, per_range_, first_, last_, prior_decay_;
+  float near_, far_, per_range_, first_, last_, prior_decay_, reach_ = kReach;
   std::vector<float> cdf_;
   std::vector<std::vector<float>> decayed_;  ///< ∫ up to u of f(y) e^(−κ(u−y)) dy, a row a κ
 };

@@ -11,25 +11,44 @@ namespace {
 
 constexpr int kRadius = 4;
 
-// Minimum (or maximum) over a centred window along one line; what lies outside the image does not count.
-template <class Pick>
-void filterLine(const std::uint8_t* in, std::uint8_t* out, int count, int stride, Pick pick) {
-  for (int i = 0; i < count; ++i) {
-    std::uint8_t value = in[i * stride];
-    for (int k = std::max(0, i - kRadius); k <= std::min(count - 1, i + kRadius); ++k) {
-      value = pick(value, in[k * stride]);
-    }
-    out[i * stride] = value;
+// Number of ones in a centred window; what lies outside the image does not count.
+using Counts = std::vector<std::uint8_t>;
+
+void countAlongRow(const std::uint8_t* row, int width, Counts& counts) {
+  int count = 0;
+  for (int x = 0; x < std::min(kRadius, width); ++x) count += row[x];
+  for (int x = 0; x < width; ++x) {
+    if (x + kRadius < width) count += row[x + kRadius];
+    counts[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(count);
+    if (x >= kRadius) count -= row[x - kRadius];
   }
 }
 
-template <class Pick>
-Image<std::uint8_t> filterSquare(const Image<std::uint8_t>& mask, Pick pick) {
-  Image<std::uint8_t> rows(mask.width(), mask.height()), both(mask.width(), mask.height());
-  for (int y = 0; y < mask.height(); ++y) filterLine(mask.row(y), rows.row(y), mask.width(), 1, pick);
-  for (int x = 0; x < mask.width(); ++x)
-    filterLine(rows.data() + x, both.data() + x, mask.height(), mask.width(), pick);
-  return both;
+// 1 where ones(x, y), the number of ones in the square window, satisfies keep(ones, pixels of the window).
+template <class Keep>
+Image<std::uint8_t> filterSquare(const Image<std::uint8_t>& mask, Keep keep) {
+  const int width = mask.width(), height = mask.height();
+  const std::size_t columns = static_cast<std::size_t>(width);
+  const auto extent = [](int i, int count) {
+    return std::min(i + kRadius, count - 1) - std::max(i - kRadius, 0) + 1;
+  };
+  std::vector<Counts> rows(static_cast<std::size_t>(height), Counts(columns));
+  std::vector<int> ones(columns, 0);
+  for (int y = 0; y < height; ++y) countAlongRow(mask.row(y), width, rows[static_cast<std::size_t>(y)]);
+  const auto accumulate = [&](int y, int sign) {
+    if (y < 0 || y >= height) return;
+    const Counts& row = rows[static_cast<std::size_t>(y)];
+    for (std::size_t x = 0; x < columns; ++x) ones[x] += sign * row[x];
+  };
+  Image<std::uint8_t> result(width, height);
+  for (int y = 0; y < kRadius; ++y) accumulate(y, 1);
+  for (int y = 0; y < height; ++y) {
+    accumulate(y + kRadius, 1);
+    for (int x = 0; x < width; ++x)
+      result(x, y) = keep(ones[static_cast<std::size_t>(x)], extent(x, width) * extent(y, height));
+    accumulate(y - kRadius, -1);
+  }
+  return result;
 }
 
 // Keeps what is joined to the border through 4-neighbours.
@@ -57,9 +76,9 @@ Image<std::uint8_t> emptyRegions(const Image<float>& depth) {
   Image<std::uint8_t> missing(depth.width(), depth.height());
   std::transform(depth.begin(), depth.end(), missing.begin(),
                  [](float d) { return static_cast<std::uint8_t>(d == kInvalidDepth); });
-  const auto smaller = [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); };
-  const auto larger = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
-  return joinedToBorder(filterSquare(filterSquare(missing, smaller), larger));
+  const auto all = [](int ones, int pixels) { return static_cast<std::uint8_t>(ones == pixels); };
+  const auto any = [](int ones, int) { return static_cast<std::uint8_t>(ones > 0); };
+  return joinedToBorder(filterSquare(filterSquare(missing, all), any));
 }
 
 double borderShare(const Image<std::uint8_t>& mask) {

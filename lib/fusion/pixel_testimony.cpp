@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fusion/prepared_view.h"
+#include "fusion/block_kernels.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/sensor/judged_view.h"
 
 namespace vdbfuse {
 namespace {
 
-constexpr double kAgreeSigmas = 3.0;
-constexpr double kAgreeCosine = 0.70710678;  // 45°
+constexpr float kAgreeSigmas = 3.0f;
+constexpr float kAgreeCosine = 0.70710678f;  // 45°
 constexpr int kConfirmed = 3;                // this many agreeing neighbours prove a point to be there
 
 std::uint8_t continuityBin(float share) { return share < 0.4f ? 0 : share < 0.7f ? 1 : share < 0.9f ? 2 : 3; }
@@ -34,6 +34,8 @@ struct MissCounts {
 };
 
 class Hearing {
+  static constexpr int kTile = 16;
+
  public:
   Hearing(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
           const SensorModel& sensor, std::size_t index, const std::vector<std::size_t>& neighbours,
@@ -50,40 +52,106 @@ class Hearing {
     }
   }
 
+  // A neighbour at a time: its images stay in the cache.
   Image<PixelTestimony> hear(MissCounts& misses) const {
+    std::vector<PixelRun> runs = collectRuns();
+    for (std::size_t k = 0; k < projectors_.size(); ++k) {
+      for (PixelRun& run : runs) ask(k, run);
+    }
     const Image<float>& depth = views_[index_].map.depth;
     Image<PixelTestimony> result(depth.width(), depth.height());
-    for (int y = 0; y < depth.height(); ++y) {
-      for (int x = 0; x < depth.width(); ++x) {
-        if (depth(x, y) != kInvalidDepth) result(x, y) = hearPixel(x, y, misses);
+    for (const PixelRun& run : runs) {
+      for (std::size_t i = 0; i < run.pixels.size(); ++i) {
+        const Answers& answers = run.answers[i];
+        if (answers.agreeing >= kConfirmed)
+          misses.missed += answers.missed, misses.looked += answers.missed + answers.agreeing;
+        result.data()[run.pixels[i]] = testimonyOf(run.pixels[i], answers);
       }
     }
     return result;
   }
 
  private:
-  PixelTestimony hearPixel(int x, int y, MissCounts& misses) const {
-    const Eigen::Vector3d point = worldPoint(views_[index_], x, y);
-    const double noise = sensor_.noise.at(views_[index_].map.depth(x, y));
-    const Eigen::Vector3f normal = surfaces_[index_].normal(x, y);
-    int agreeing = 0, past = 0, missed = 0, hidden = 0;
-    for (std::size_t k = 0; k < projectors_.size(); ++k) {
-      const Answer answer = ask(k, point, noise, normal);
-      agreeing += answer == Answer::Agrees;
-      past += answer == Answer::SeesPast;
-      missed += answer == Answer::Missed;
-      hidden += answer == Answer::Hidden && faces(normal, neighbours_[k], point);
+  // What was answered about a pixel; at most NeighbourOptions::count each.
+  struct Answers {
+    std::uint16_t agreeing = 0, past = 0, missed = 0, hidden = 0;
+  };
+
+  // Pixels that are asked about together.
+  struct PixelRun {
+    std::vector<std::size_t> pixels;
+    std::vector<Eigen::Vector3d> points;
+    std::vector<Answers> answers;
+  };
+
+  std::vector<PixelRun> collectRuns() const {
+    const Image<float>& depth = views_[index_].map.depth;
+    std::vector<PixelRun> runs;
+    for (int y = 0; y < depth.height(); y += kTile) {
+      for (int x = 0; x < depth.width(); x += kTile) {
+        if (runs.empty() || runs.back().points.size() + kTile * kTile > PointBlock::kCapacity)
+          runs.emplace_back();
+        addTile(x, y, runs.back());
+      }
     }
-    if (agreeing >= kConfirmed) misses.missed += missed, misses.looked += missed + agreeing;
+    if (!runs.empty() && runs.back().points.empty()) runs.pop_back();
+    for (PixelRun& run : runs) run.answers.resize(run.points.size());
+    return runs;
+  }
+
+  // Tiles stay together in the images of the neighbours, whichever way those are turned.
+  void addTile(int left, int top, PixelRun& run) const {
+    const View& view = views_[index_];
+    const int right = std::min(left + kTile, view.map.depth.width()),
+              bottom = std::min(top + kTile, view.map.depth.height());
+    for (int y = top; y < bottom; ++y) {
+      for (int x = left; x < right; ++x) {
+        if (view.map.depth(x, y) == kInvalidDepth) continue;
+        run.pixels.push_back(static_cast<std::size_t>(y * view.map.depth.width() + x));
+        run.points.push_back(worldPoint(view, x, y));
+      }
+    }
+  }
+
+  PixelTestimony testimonyOf(std::size_t pixel, const Answers& answers) const {
     PixelTestimony testimony;
     testimony.measured = true;
-    testimony.agreement = capped(agreeing, PixelTestimony::kAgreements);
-    testimony.contradiction = capped(past, PixelTestimony::kContradictions);
-    testimony.occlusion = occlusionBin(hidden);
-    testimony.misses = capped(missed, PixelTestimony::kMisses);
-    testimony.continuity = continuityBin(surfaces_[index_].continuity(x, y));
+    testimony.agreement = capped(answers.agreeing, PixelTestimony::kAgreements);
+    testimony.contradiction = capped(answers.past, PixelTestimony::kContradictions);
+    testimony.occlusion = occlusionBin(answers.hidden);
+    testimony.misses = capped(answers.missed, PixelTestimony::kMisses);
+    testimony.continuity = continuityBin(surfaces_[index_].continuity.data()[pixel]);
     return testimony;
   }
+
+  void ask(std::size_t k, PixelRun& run) const {
+    const PointBlock block(run.points);
+    if (!projectors_[k].mightSee(block.centre, block.radius)) return;
+    const BlockLook seen = look(projectors_[k], block);
+    prefetch(views_[neighbours_[k]].map.depth.data(), seen, block.size);
+    for (std::size_t i = 0; i < block.size; ++i) {
+      if (seen.pixel[i] < 0) continue;
+      const Asked asked{static_cast<float>(sensor_.noise.at(depth(run.pixels[i]))), normal(run.pixels[i]),
+                        static_cast<std::size_t>(seen.pixel[i]), seen.depth[i]};
+      const Answer answer = answerOf(k, asked);
+      Answers& answers = run.answers[i];
+      if (answer == Answer::Agrees) ++answers.agreeing;
+      if (answer == Answer::SeesPast) ++answers.past;
+      if (answer == Answer::Missed) ++answers.missed;
+      if (answer == Answer::Hidden && faces(asked.normal, neighbours_[k], run.points[i])) ++answers.hidden;
+    }
+  }
+
+  // A point, and where the neighbour saw it.
+  struct Asked {
+    float noise;
+    Eigen::Vector3f normal;
+    std::size_t pixel;
+    float depth;
+  };
+
+  float depth(std::size_t pixel) const { return views_[index_].map.depth.data()[pixel]; }
+  const Eigen::Vector3f& normal(std::size_t pixel) const { return surfaces_[index_].normal.data()[pixel]; }
 
   // An unknown normal may face anything.
   bool faces(const Eigen::Vector3f& normal, std::size_t view, const Eigen::Vector3d& point) const {
@@ -92,30 +160,30 @@ class Hearing {
     return normal.isZero() || normal.dot(to_sensor) > kFacingCosine;
   }
 
-  Answer ask(std::size_t k, const Eigen::Vector3d& point, double noise, const Eigen::Vector3f& normal) const {
-    const std::optional<Sighting> seen = projectors_[k](point);
-    if (!seen) return Answer::Unseen;
-    if (isOutsideMask(views_[neighbours_[k]].map, seen->x, seen->y)) return Answer::SeesPast;
-    const Answer answer = compare(k, neighbours_[k], *seen, noise, normal);
+  Answer answerOf(std::size_t k, const Asked& asked) const {
+    const DepthMap& map = views_[neighbours_[k]].map;
+    if (!map.mask.empty() && isOutsideMask(map, static_cast<int>(asked.pixel) % map.depth.width(),
+                                           static_cast<int>(asked.pixel) / map.depth.width()))
+      return Answer::SeesPast;
+    const Answer answer = compare(k, neighbours_[k], asked);
     if (answer == Answer::Agrees || neighbours_[k] >= alternatives_.size()) return answer;
     for (const std::size_t layer : alternatives_[neighbours_[k]]) {
-      if (compare(k, layer, *seen, noise, normal) == Answer::Agrees) return Answer::Agrees;
+      if (compare(k, layer, asked) == Answer::Agrees) return Answer::Agrees;
     }
     return answer;
   }
 
   // What view `index`, neighbour k or an alternative of it, measured where it saw the point.
-  Answer compare(std::size_t k, std::size_t index, const Sighting& seen, double noise,
-                 const Eigen::Vector3f& normal) const {
-    const View& other = views_[index];
-    const float measured = other.map.depth(seen.x, seen.y);
+  Answer compare(std::size_t k, std::size_t index, const Asked& asked) const {
+    const float measured = views_[index].map.depth.data()[asked.pixel];
     if (measured == kInvalidDepth) return Answer::Missed;
-    const double further = measured - seen.depth, other_noise = noise_[k].at(measured);
-    if (further * further > kAgreeSigmas * kAgreeSigmas * (noise * noise + other_noise * other_noise))
+    const float further = measured - asked.depth, other_noise = noise_[k].at(measured);
+    if (further * further >
+        kAgreeSigmas * kAgreeSigmas * (asked.noise * asked.noise + other_noise * other_noise))
       return further > 0 ? Answer::SeesPast : Answer::Hidden;
-    const Eigen::Vector3f other_normal = surfaces_[index].normal(seen.x, seen.y);
-    if (normal.isZero() || other_normal.isZero()) return Answer::Agrees;
-    return normal.dot(other_normal) >= kAgreeCosine ? Answer::Agrees : Answer::Hidden;
+    const Eigen::Vector3f& other_normal = surfaces_[index].normal.data()[asked.pixel];
+    if (asked.normal.isZero() || other_normal.isZero()) return Answer::Agrees;
+    return asked.normal.dot(other_normal) >= kAgreeCosine ? Answer::Agrees : Answer::Hidden;
   }
 
   const std::vector<View>& views_;

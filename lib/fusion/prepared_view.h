@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <vector>
 
 #include "vdbfuse/geometry/projector.h"
@@ -27,12 +28,19 @@ class NoiseTable {
       const double depth = sensor.near + i * (sensor.far - sensor.near) / kSteps;
       values_[static_cast<std::size_t>(i)] = static_cast<float>(lookupNoise(sensor, projection, depth));
     }
+    std::partial_sum(values_.begin(), values_.end(), bounds_.begin(),
+                     [](float a, float b) { return std::max(a, b); });
   }
   float at(float depth) const {
     if (!(per_step_ > 0)) return static_cast<float>(lookupNoise(*sensor_, *projection_, depth));
     const float place = std::clamp((depth - near_) * per_step_, 0.0f, kSteps - 0.001f);
     const std::size_t i = static_cast<std::size_t>(place);
     return values_[i] + (place - static_cast<float>(i)) * (values_[i + 1] - values_[i]);
+  }
+  /// No smaller than at() any depth up to this one. REQUIRES: a finite range.
+  float boundUpTo(float depth) const {
+    const float place = std::clamp((depth - near_) * per_step_, 0.0f, kSteps - 0.001f);
+    return bounds_[static_cast<std::size_t>(place) + 1];
   }
   const float* values() const { return values_.data(); }
   float near() const { return near_; }
@@ -42,7 +50,7 @@ class NoiseTable {
   float near_, per_step_;
   const SensorModel* sensor_;
   const Projection* projection_;
-  std::array<float, kSteps + 1> values_{};
+  std::array<float, kSteps + 1> values_{}, bounds_{};
 };
 
 struct PreparedView {
@@ -50,11 +58,15 @@ struct PreparedView {
       : view(&judged),
         projector(judged.projection, judged.world_from_camera),
         noise(sensor, judged.projection),
-        has_mask(std::find(judged.look.begin(), judged.look.end(), Look::Outside) != judged.look.end()) {}
+        has_looks(std::any_of(judged.look.begin(), judged.look.end(),
+                              [](Look look) { return look != Look::Nothing; })),
+        has_mask(has_looks &&
+                 std::find(judged.look.begin(), judged.look.end(), Look::Outside) != judged.look.end()) {}
   const JudgedView* view;
   Projector projector;
   NoiseTable noise;
-  bool has_mask;  ///< some pixel looks past the object
+  bool has_looks;  ///< some pixel says something of its whole ray
+  bool has_mask;   ///< some pixel looks past the object
 };
 
 /// visit(depth, share of the inliers) for all that a pixel may have measured. REQUIRES: its depth is valid.

@@ -79,7 +79,10 @@ void TestimonySum::addOutside(const PreparedView& prepared, const PointBlock& bl
   accumulate(integral_, said, weight, block.size, sums.nodes.data());
   for (std::size_t i = 0; i < block.size; ++i) {
     sums.reports[i] += weight * said.share[i];
-    if (said.share[i] > 0) sums.heard[i] += weight;
+    sums.heard[i] += said.share[i] > 0 ? weight : 0.0f;
+  }
+  if (!prepared.has_looks) return;
+  for (std::size_t i = 0; i < block.size; ++i) {
     if (seen.pixel[i] < 0 || said.share[i] != 0) continue;
     const Look look = prepared.view->look.data()[seen.pixel[i]];
     if (look == Look::Empty) sums.empties[i] += weight;

@@ -91,7 +91,7 @@ BENCHMARK(BM_Accumulate);
 void BM_Evidence(benchmark::State& state) {
   const ThreadLimit one(1);
   std::vector<Eigen::Vector3d> points;
-  for (const auto& block : blocks(64)) points.insert(points.end(), block.begin(), block.end());
+  for (const auto& block : blocks(512)) points.insert(points.end(), block.begin(), block.end());
   for (auto _ : state) benchmark::DoNotOptimize(evidenceAt(scan(), points, {}));
   pairs(state, points.size() * kViews);
 }

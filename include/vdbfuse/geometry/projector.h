@@ -42,6 +42,8 @@ class Projector {
     for (Eigen::Vector3d& side : sides_) side.normalize();
   }
 
+  int width() const { return width_; }
+
   /// False only when no point of a ball can be seen. An undistorted pinhole tests its frustum, others say
   /// true.
   bool mightSee(const Eigen::Vector3d& centre, double radius) const {
