@@ -97,6 +97,32 @@ void BM_Evidence(benchmark::State& state) {
 }
 BENCHMARK(BM_Evidence)->Unit(benchmark::kMillisecond);
 
+// The inside of a hollow sphere, walked through: each view sees a part of the wall and is skipped elsewhere.
+// Pairs count whether skipped or not.
+void BM_EvidenceOfARoom(benchmark::State& state) {
+  const ThreadLimit one(1);
+  constexpr int kSteps = 96;
+  static const JudgedViews room = [] {
+    constexpr double kRoom = 0.5;
+    std::vector<View> views;
+    const Pinhole camera{640, 480, 525, 525, 319.5, 239.5, {}};
+    for (int i = 0; i < kSteps; ++i) {
+      const Eigen::Vector3d eye = 0.2 * test::fibonacciDirection(i, kSteps);
+      views.push_back(test::castView(eye, -eye, camera, [](const auto& origin, const auto& direction) {
+        const double b = origin.dot(direction);
+        return -b + std::sqrt(b * b - origin.squaredNorm() + kRoom * kRoom);
+      }));
+    }
+    test::addNoise(views, {0.002, 0, 0}, 1);
+    return believe(std::move(views), {gaussianNoise(), {0.002, 0, 0}, 0.1, 1.0}, 0.01);
+  }();
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& block : blocks(512)) points.insert(points.end(), block.begin(), block.end());
+  for (auto _ : state) benchmark::DoNotOptimize(evidenceAt(room, points, {}));
+  pairs(state, points.size() * kSteps);
+}
+BENCHMARK(BM_EvidenceOfARoom)->Unit(benchmark::kMillisecond);
+
 // What the memory gives: a pair of the evidence must read a depth and an outlier probability.
 void BM_Copy(benchmark::State& state) {
   std::vector<char> from(64 << 20), to(64 << 20);

@@ -101,6 +101,32 @@ TEST(BlockKernels, TheTestimonyOfABlockIsTheExactRatioOfEachPoint) {
   }
 }
 
+// Points that are all on the same side take a shorter way.
+TEST(BlockKernels, FarFromTheSurfaceTheTestimonyIsTheExactRatioToo) {
+  for (const NoiseShape& shape : {gaussianNoise(), logisticNoise(), laplaceNoise()}) {
+    for (const double shift : {0.0, 1.0}) {
+      OneView scene;
+      scene.judged.sensor.shape = shape;
+      scene.judged.sensor.near = 0.5;
+      const PreparedView view = prepare(scene.judged).front();
+      const LikelihoodRatio ratio(scene.judged.sensor);
+      const Eigen::Vector3d towards = scene.judged.views.front().world_from_camera.translation().normalized();
+      const auto points = randomPoints(500, 0.8 * shift * towards, 0.2);
+      const BlockLook seen = look(view, PointBlock(points));
+      const BlockTestimony said = testify(view, ratio, 0.0f, seen, points.size());
+      std::size_t measured = 0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (said.share[i] == 0) continue;
+        ++measured;
+        const float depth = view.view->depth.data()[seen.pixel[i]];
+        const Measurement m(depth, view.noise.at(depth), view.view->outlier.data()[seen.pixel[i]]);
+        EXPECT_NEAR(said.log_ratio[i], logLikelihoodRatio(scene.judged.sensor, m, seen.depth[i]), 2e-3) << i;
+      }
+      EXPECT_GT(measured, 200u);
+    }
+  }
+}
+
 TEST(BlockKernels, AViewCountsForLessBehindWhatItMeasured) {
   constexpr float kThickness = 0.1f;
   for (const bool several : {false, true}) {
