@@ -15,7 +15,7 @@ namespace {
 // A default voxel never makes the longest side of the domain longer than this.
 constexpr double kDefaultLongestSide = 512;
 constexpr double kLambdaPerVoxel = 0.6;
-constexpr double kThicknessPerDiagonal = 0.22;
+constexpr double kThicknessPerDiagonal = 0.11;
 
 double scaleAtExponent(const NoiseLaw& law, double typical, int exponent) {
   return law.at(typical) / std::pow(typical, exponent);

@@ -63,7 +63,7 @@ void addEnergyOptions(CLI::App& app, Request& r) {
   app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")
       ->capture_default_str();
   app.add_option("--thickness", r.thickness,
-                 "How far behind a measured surface solid is to be expected, length; auto: 0.22 "
+                 "How far behind a measured surface solid is to be expected, length; auto: 0.11 "
                  "of the domain's diagonal; off: any distance alike")
       ->capture_default_str();
   app.add_option("--depth-prior", o.prior_decay,

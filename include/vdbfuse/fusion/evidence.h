@@ -35,8 +35,8 @@ struct EvidenceOptions {
   /// A single v in place of the integral, in (0, 1]; 0: integrate.
   double visibility = 0.0;
   /// Upper bound of b, the prior log-odds of outside. Where n views report b(n) = min(prior, −½ log ∫ Beta
-  /// (1−v)ⁿ dv).
-  double prior = 0.75;
+  /// (1−v)ⁿ dv). Larger: less is filled in where few views deny, also inside thin parts.
+  double prior = 0.0;
   /// τ: how far behind a measured surface the same solid is to be expected, length; 0: at any distance alike.
   /// At δ behind its measurement a view counts as g = e^(−(δ/τ)²) of a view, in the product and in b: from
   /// far behind it knows only that something is in between. Where e < 0 it is multiplied by the views' mean

@@ -46,7 +46,7 @@ struct ReconstructOptions {
   // The energy.
   EvidenceOptions evidence;
   double mu = 2.0;  ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
-  /// Takes the place of evidence.thickness; default: 0.22 × diagonal of the domain. 0: off.
+  /// Takes the place of evidence.thickness; default: 0.11 × diagonal of the domain. 0: off.
   std::optional<double> thickness;
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.6/max(voxel, median noise)
 
