@@ -16,6 +16,8 @@ constexpr int kNodes = 8;
 constexpr double kViewsOfEightNodes = 200;
 constexpr double kPriorOfOutside = 0.75;
 constexpr float kNobodyDenies = 2.0f;
+constexpr double kClearance =
+    2.0;  // grid steps between a surface and a point that its pixel claims to be free
 // Views that repeat each other share the weight of one: taking away a view's own share alone would leave its
 // copies to confirm its mistakes.
 constexpr float kOwnWeight = 1.0f;
@@ -204,14 +206,20 @@ class TestimonyGrid {
   std::vector<float> sums_, reports_, without_;  ///< brick by brick
 };
 
+// A ray that comes in flat is near to the surface, and to grid points behind it, for longer.
+double slant(float incidence) {
+  constexpr double kFlattest = 0.2;
+  return incidence > 0 ? std::max<double>(incidence, kFlattest) : 1.0;
+}
+
 void examineRow(const TestimonyGrid& grid, const JudgedViews& judged, std::size_t index, int y,
                 Image<PixelTestimony>& testimony) {
   const JudgedView& view = judged.views[index];
   for (int x = 0; x < view.depth.width(); ++x) {
     const float depth = view.depth(x, y);
     if (depth == kInvalidDepth) continue;
-    const double claimed =
-        depth - std::max(3 * lookupNoise(judged.sensor, view.projection, depth), 2 * grid.step());
+    const double claimed = depth - std::max(3 * lookupNoise(judged.sensor, view.projection, depth),
+                                            kClearance * grid.step() / slant(view.incidence(x, y)));
     if (claimed <= judged.sensor.near) continue;
     const Eigen::Vector3d start =
         view.world_from_camera * unproject(view.projection, x, y, judged.sensor.near);
