@@ -52,15 +52,15 @@ class Hearing {
     }
   }
 
-  // A neighbour at a time: its images stay in the cache.
   Image<PixelTestimony> hear(MissCounts& misses) const {
-    std::vector<PixelRun> runs = collectRuns();
-    for (std::size_t k = 0; k < projectors_.size(); ++k) {
-      for (PixelRun& run : runs) ask(k, run);
-    }
     const Image<float>& depth = views_[index_].map.depth;
     Image<PixelTestimony> result(depth.width(), depth.height());
-    for (const PixelRun& run : runs) {
+    std::vector<PixelRun> runs = collectRuns();
+    for (PixelRun& run : runs) {
+      const PointBlock block(run.points);
+      for (std::size_t k = 0; k < projectors_.size(); ++k) {
+        if (projectors_[k].mightSee(block.centre, block.radius)) ask(k, block, run);
+      }
       for (std::size_t i = 0; i < run.pixels.size(); ++i) {
         const Answers& answers = run.answers[i];
         if (answers.agreeing >= kConfirmed)
@@ -124,9 +124,7 @@ class Hearing {
     return testimony;
   }
 
-  void ask(std::size_t k, PixelRun& run) const {
-    const PointBlock block(run.points);
-    if (!projectors_[k].mightSee(block.centre, block.radius)) return;
+  void ask(std::size_t k, const PointBlock& block, PixelRun& run) const {
     const BlockLook seen = look(projectors_[k], block);
     prefetch(views_[neighbours_[k]].map.depth.data(), seen, block.size);
     for (std::size_t i = 0; i < block.size; ++i) {
