@@ -2,28 +2,47 @@
 #include "vdbfuse/mincut/network.h"
 
 #include <algorithm>
-#include <limits>
+#include <atomic>
 #include <string>
 
+#include "lattice_edges.h"
+#include "listed_edges.h"
+#include "state.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {
+
+using mincut::ArcCursor;
+using mincut::State;
+using mincut::Tile;
+
 namespace {
 
-constexpr std::uint64_t kMaxCount = std::numeric_limits<std::int32_t>::max();
+constexpr std::size_t kMaxTiles = std::size_t{1} << 25;
+constexpr std::uint64_t kMaxEdges = std::uint64_t{1} << 30;
 
-[[noreturn]] void refuse(std::uint64_t edge, const std::string& what_is_wrong) {
-  throw InvalidArgument("edges", "edge " + std::to_string(edge) + " " + what_is_wrong);
+[[noreturn]] void refuseTile(std::size_t tile, const std::string& what_is_wrong) {
+  throw InvalidArgument("tiles", "tile " + std::to_string(tile) + " " + what_is_wrong);
 }
 
-void checkEdge(const NetworkEdge& edge, std::uint64_t index, std::size_t nodes) {
-  if (std::max(edge.from, edge.to) >= nodes) {
-    refuse(index, "joins nodes " + std::to_string(edge.from) + " and " + std::to_string(edge.to) +
-                      ", but there are " + std::to_string(nodes) + " nodes");
+void makeTiles(const NetworkSource& source, State& state) {
+  const std::size_t count = source.tiles.size();
+  if (count >= kMaxTiles) throw InvalidArgument("tiles", "2^25 tiles or more");
+  state.tiles.resize(count + 1);
+  state.has_lattice = source.has_lattice;
+  std::ranges::fill(state.tiles.back().next, static_cast<std::uint32_t>(count));
+  for (std::size_t t = 0; t < count; ++t) {
+    state.tiles[t].nodes = source.tiles[t].nodes;
+    for (int d = 0; d < lattice::kDirections; ++d) {
+      const std::uint32_t next = source.has_lattice ? source.tiles[t].neighbours[d] : kNoTile;
+      state.tiles[t].next[d] = next == kNoTile ? static_cast<std::uint32_t>(count) : next;
+      if (next == kNoTile) continue;
+      if (next >= count) refuseTile(t, "has the neighbour " + std::to_string(next) + ", which is not there");
+      if (source.tiles[next].neighbours[lattice::opposite(d)] != t)
+        refuseTile(t, "has the neighbour " + std::to_string(next) + ", whose neighbour it is not");
+    }
   }
-  if (edge.from == edge.to) refuse(index, "joins node " + std::to_string(edge.from) + " to itself");
-  const std::int32_t smaller = std::min(edge.capacity, edge.reverse_capacity);
-  if (smaller < 0) refuse(index, "has the negative capacity " + std::to_string(smaller));
 }
 
 std::uint64_t addToHash(std::uint64_t hash, const NetworkEdge& edge) {
@@ -32,105 +51,146 @@ std::uint64_t addToHash(std::uint64_t hash, const NetworkEdge& edge) {
   return ((hash ^ ends) * kOdd) ^ (hash >> 29);
 }
 
-}  // namespace
-
-/// The two passes of buildNetwork(). While counting, first_arcs_[v] is the degree of v; while placing, it is
-/// one past the last free slot of v's row, and rows fill from the back, so that no array of cursors is
-/// needed.
-class NetworkBuilder {
+/// Listed edges, in three calls: who has any, how many each, and which.
+class RowBuilder {
  public:
-  explicit NetworkBuilder(std::vector<std::int64_t> terminals) {
-    if (terminals.size() > kMaxCount) throw InvalidArgument("terminals", "more than 2^31 - 1 nodes");
-    network_.terminals_ = std::move(terminals);
-    network_.first_arcs_.assign(network_.terminals_.size() + 1, 0);
-  }
+  RowBuilder(const NetworkSource& source, State& state) : source_(source), state_(state) {}
 
-  void count(std::span<const NetworkEdge> edges) {
-    for (const NetworkEdge& edge : edges) {
-      checkEdge(edge, counted_++, network_.terminals_.size());
-      counted_hash_ = addToHash(counted_hash_, edge);
-      ++network_.first_arcs_[edge.from];
-      ++network_.first_arcs_[edge.to];
+  void build() {
+    if (!source_.edges) return;
+    forEach([this](const NetworkEdge& edge) { join(edge); });
+    if (edges_ >= kMaxEdges) throw InvalidArgument("edges", "2^30 edges or more");
+    std::uint32_t rows = 0;
+    for (Tile& tile : state_.tiles) {
+      tile.first_row = rows;
+      rows += static_cast<std::uint32_t>(std::popcount(tile.joined));
     }
-    if (2 * counted_ > kMaxCount) throw InvalidArgument("edges", "more than 2^30 - 1 edges");
-  }
-
-  void allocate() {
-    std::uint32_t end = 0;
-    for (std::uint32_t& row : network_.first_arcs_) row = end += row;
-    network_.heads_.resize(end);
-    network_.mates_.resize(end);
-    network_.capacities_.resize(end);
-  }
-
-  void place(std::span<const NetworkEdge> edges) {
-    for (const NetworkEdge& edge : edges) {
-      if (placed_++ >= counted_) refuseDifference();
-      checkEdge(edge, placed_ - 1, network_.terminals_.size());
-      placed_hash_ = addToHash(placed_hash_, edge);
-      const std::uint32_t arc = slot(edge.from);
-      const std::uint32_t mate = slot(edge.to);
-      set(arc, edge.to, mate, edge.capacity);
-      set(mate, edge.from, arc, edge.reverse_capacity);
-    }
-  }
-
-  Network finish() {
-    if (placed_ != counted_ || placed_hash_ != counted_hash_) refuseDifference();
-    for (std::uint32_t node = 0; node < network_.nodeCount(); ++node) clampTerminal(node);
-    return std::move(network_);
+    state_.row_starts.assign(std::size_t{rows} + 1, 0);
+    forEach([this](const NetworkEdge& edge) { count(edge); });
+    for (std::size_t row = 1; row < state_.row_starts.size(); ++row)
+      state_.row_starts[row] += state_.row_starts[row - 1];
+    if (state_.row_starts.back() != 2 * edges_) mincut::refuseOtherEdges();
+    state_.heads = mincut::Buffer<std::uint32_t>(2 * edges_);
+    state_.mates = mincut::Buffer<std::uint32_t>(2 * edges_);
+    state_.arc_residual = mincut::Buffer<std::uint32_t>(2 * edges_);
+    place();
   }
 
  private:
-  [[noreturn]] static void refuseDifference() {
-    throw InvalidArgument("edges", "the second call handed over other edges than the first");
+  template <typename Visit>
+  void forEach(const Visit& visit) {
+    source_.edges([&](std::span<const NetworkEdge> batch) {
+      for (const NetworkEdge& edge : batch) visit(edge);
+    });
   }
 
-  std::uint32_t slot(std::uint32_t node) {
-    if (network_.first_arcs_[node] == 0) refuseDifference();
-    return --network_.first_arcs_[node];
+  void join(const NetworkEdge& edge) {
+    checkEdge(edge, edges_++, state_);
+    hash_ = addToHash(hash_, edge);
+    for (const std::uint32_t node : {edge.from, edge.to})
+      state_.tiles[mincut::tileOf(node)].joined |= mincut::bitOf(node);
+  }
+
+  void count(const NetworkEdge& edge) {
+    for (const std::uint32_t node : {edge.from, edge.to}) {
+      if (mincut::tileOf(node) >= state_.tileCount() || !state_.isJoined(node)) mincut::refuseOtherEdges();
+      ++state_.row_starts[state_.row(node) + 1];
+    }
+  }
+
+  void place() {
+    ArcCursor cursor(state_);
+    std::uint64_t hash = 0;
+    forEach([&](const NetworkEdge& edge) {
+      const ArcCursor::Arcs arcs = cursor.next(edge);
+      hash = addToHash(hash, edge);
+      set(arcs.arc, edge.to, arcs.mate, edge.capacity);
+      set(arcs.mate, edge.from, arcs.arc, edge.reverse_capacity);
+    });
+    cursor.finish();
+    if (hash != hash_) mincut::refuseOtherEdges();
   }
 
   void set(std::uint32_t arc, std::uint32_t head, std::uint32_t mate, std::int32_t capacity) {
-    network_.heads_[arc] = head;
-    network_.mates_[arc] = mate;
-    network_.capacities_[arc] = capacity;
+    state_.heads[arc] = head;
+    state_.mates[arc] = mate;
+    state_.arc_residual[arc] = static_cast<std::uint32_t>(capacity);
   }
 
-  void clampTerminal(std::uint32_t node) {
-    std::int64_t leaving = 1;
-    std::int64_t entering = 1;
-    for (std::uint32_t arc = network_.firstArc(node); arc < network_.firstArc(node + 1); ++arc) {
-      leaving += network_.capacity(arc);
-      entering += network_.capacity(network_.mate(arc));
-    }
-    std::int64_t& terminal = network_.terminals_[node];
-    terminal = std::clamp(terminal, -entering, leaving);
-  }
-
-  Network network_;
-  std::uint64_t counted_ = 0;
-  std::uint64_t placed_ = 0;
-  std::uint64_t counted_hash_ = 0;
-  std::uint64_t placed_hash_ = 0;
+  const NetworkSource& source_;
+  State& state_;
+  std::uint64_t edges_ = 0;
+  std::uint64_t hash_ = 0;
 };
 
+}  // namespace
+
+NetworkSource graphSource(std::vector<std::int64_t> terminals, EdgeBatches edges) {
+  NetworkSource source;
+  source.has_lattice = false;
+  source.edges = std::move(edges);
+  const std::size_t nodes = terminals.size();
+  source.tiles.resize((nodes + lattice::kSlots - 1) / lattice::kSlots);
+  for (std::size_t node = 0; node < nodes; ++node)
+    source.tiles[node / lattice::kSlots].nodes |= std::uint64_t{1} << node % lattice::kSlots;
+  source.capacities = [terminals = std::move(terminals)](std::uint32_t tile, TileCapacities& values) {
+    const std::size_t begin = std::size_t{tile} * lattice::kSlots;
+    const std::size_t end = std::min(begin + lattice::kSlots, terminals.size());
+    for (std::size_t node = begin; node < end; ++node) values.terminal[node - begin] = terminals[node];
+  };
+  return source;
+}
+
+NetworkSource graphSource(std::vector<std::int64_t> terminals, std::vector<NetworkEdge> edges) {
+  return graphSource(std::move(terminals),
+                     EdgeBatches([edges = std::move(edges)](const auto& take) { take(edges); }));
+}
+
+Network::Network() : state_(std::make_unique<State>()) {
+  state_->tiles.resize(1);
+  state_->excess = mincut::Buffer<std::int64_t>(lattice::kSlots);
+  std::ranges::fill(state_->excess, 0);
+}
+Network::~Network() = default;
+Network::Network(const Network& other) : state_(std::make_unique<State>(*other.state_)) {}
+Network::Network(Network&& other) noexcept = default;
+Network& Network::operator=(Network other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
+
+std::uint32_t Network::tileCount() const { return state_->tileCount(); }
+
+std::size_t Network::nodeCount() const {
+  std::size_t nodes = 0;
+  for (const Tile& tile : state_->tiles) nodes += static_cast<std::size_t>(std::popcount(tile.nodes));
+  return nodes;
+}
+
+std::size_t Network::edgeCount() const {
+  std::size_t edges = state_->heads.size() / 2;
+  for (std::uint32_t t = 0; state_->has_lattice && t < tileCount(); ++t) {
+    for (int d = 1; d < lattice::kDirections; d += 2)
+      edges += static_cast<std::size_t>(std::popcount(mincut::latticeEdges(*state_, t, d)));
+  }
+  return edges;
+}
+
+std::int64_t Network::excess(std::uint32_t node) const { return state_->excess[node]; }
+
 std::size_t Network::bytes() const {
-  return first_arcs_.size() * sizeof(first_arcs_[0]) + heads_.size() * sizeof(heads_[0]) +
-         mates_.size() * sizeof(mates_[0]) + capacities_.size() * sizeof(capacities_[0]) +
-         terminals_.size() * sizeof(terminals_[0]);
+  const State& s = *state_;
+  return s.tiles.size() * sizeof(Tile) + s.excess.size() * sizeof(std::int64_t) +
+         (s.residual.size() + s.row_starts.size() + 3 * s.heads.size()) * sizeof(std::uint32_t);
 }
 
-Network buildNetwork(std::vector<std::int64_t> terminals, const EdgeBatches& edges) {
-  NetworkBuilder builder(std::move(terminals));
-  edges([&](std::span<const NetworkEdge> batch) { builder.count(batch); });
-  builder.allocate();
-  edges([&](std::span<const NetworkEdge> batch) { builder.place(batch); });
-  return builder.finish();
-}
-
-Network buildNetwork(std::vector<std::int64_t> terminals, std::span<const NetworkEdge> edges) {
-  return buildNetwork(std::move(terminals), [edges](const auto& take) { take(edges); });
+Network buildNetwork(const NetworkSource& source) {
+  Network network;
+  State& state = network.state();
+  makeTiles(source, state);
+  RowBuilder(source, state).build();
+  mincut::fillTiles(source, state);
+  return network;
 }
 
 }  // namespace vdbfuse

@@ -2,72 +2,97 @@
 #include "vdbfuse/mincut/verify.h"
 
 #include <algorithm>
+#include <atomic>
+
+#include "lattice_edges.h"
+#include "listed_edges.h"
+#include "state.h"
+#include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {
 namespace {
 
-std::string counted(std::uint64_t count, const std::string& what, std::uint64_t first) {
-  return std::to_string(count) + " " + what + ", the first is " + std::to_string(first);
-}
+using mincut::State;
 
-bool checkLengths(const Network& network, const MinCut& cut, CutReport& report) {
-  const auto check = [&](std::size_t length, std::size_t expected, const std::string& name) {
-    if (length == expected) return;
-    report.problems.push_back(name + " has " + std::to_string(length) + " values, expected " +
-                              std::to_string(expected));
-  };
-  check(cut.sides.size(), network.nodeCount(), "sides");
-  check(cut.excess.size(), network.nodeCount(), "excess");
-  check(cut.residual.size(), network.arcCount(), "residual");
-  return report.problems.empty();
-}
+/// Sums up what tiles and edges say, from any thread: integer sums do not depend on the order.
+class Auditor {
+ public:
+  Auditor(const State& state, const MinCut& cut)
+      : state_(state), cut_(cut), surplus_(std::size_t{state.tileCount()} * lattice::kSlots, 0) {}
 
-/// What arc carries, negative where its mate does.
-std::int64_t flowOn(const Network& network, const MinCut& cut, std::uint32_t arc) {
-  return std::int64_t{network.capacity(arc)} - std::int64_t{cut.residual[arc]};
-}
-
-void checkCapacities(const Network& network, const MinCut& cut, CutReport& report) {
-  std::uint32_t first = 0;
-  for (std::uint32_t arc = 0; arc < network.arcCount(); ++arc) {
-    const std::uint32_t mate = network.mate(arc);
-    if (arc > mate || flowOn(network, cut, arc) == -flowOn(network, cut, mate)) continue;
-    if (report.overfull_edges++ == 0) first = arc;
+  void addTerminal(std::uint32_t node, std::int64_t terminal) {
+    addSurplus(node, terminal);
+    flow_ += std::max<std::int64_t>(terminal, 0) - std::max<std::int64_t>(state_.excess[node], 0);
+    capacity_ += isSource(node) ? std::max<std::int64_t>(-terminal, 0) : std::max<std::int64_t>(terminal, 0);
   }
-  if (report.overfull_edges == 0) return;
-  report.problems.push_back(
-      counted(report.overfull_edges, "edges whose residuals do not add up to their capacities", first));
-}
 
-void checkConservation(const Network& network, const MinCut& cut, CutReport& report) {
-  std::uint32_t first = 0;
-  for (std::uint32_t node = 0; node < network.nodeCount(); ++node) {
-    std::int64_t excess = network.terminal(node);
-    for (std::uint32_t arc = network.firstArc(node); arc < network.firstArc(node + 1); ++arc) {
-      excess -= flowOn(network, cut, arc);
+  void addEdge(const NetworkEdge& edge, std::int64_t residual, std::int64_t reverse_residual) {
+    const std::int64_t flow = edge.capacity - residual;
+    if (flow != reverse_residual - edge.reverse_capacity) {
+      ++overfull_;
+      lower(first_overfull_, edge.from);
     }
-    report.flow += std::max<std::int64_t>(network.terminal(node), 0) - std::max<std::int64_t>(excess, 0);
-    if (excess != cut.excess[node] && report.unbalanced_nodes++ == 0) first = node;
+    addSurplus(edge.from, -flow);
+    addSurplus(edge.to, flow);
+    if (isSource(edge.from) && !isSource(edge.to)) capacity_ += edge.capacity;
+    if (!isSource(edge.from) && isSource(edge.to)) capacity_ += edge.reverse_capacity;
   }
-  if (report.unbalanced_nodes == 0) return;
-  report.problems.push_back(
-      counted(report.unbalanced_nodes, "nodes whose excess is not terminal + inflow - outflow", first));
-}
 
-std::int64_t cutCapacity(const Network& network, const std::vector<CutSide>& sides) {
-  std::int64_t capacity = 0;
-  for (std::uint32_t node = 0; node < network.nodeCount(); ++node) {
-    const std::int64_t terminal = network.terminal(node);
-    if (sides[node] == CutSide::Sink) {
-      capacity += std::max<std::int64_t>(terminal, 0);
-      continue;
+  CutReport report() const {
+    CutReport report;
+    report.cut_capacity = capacity_;
+    report.flow = flow_;
+    report.overfull_edges = overfull_;
+    addProblem(report, overfull_,
+               "edges whose residuals do not add up to their capacities, the first at node ",
+               first_overfull_);
+    std::size_t first = 0;
+    for (std::size_t node = surplus_.size(); node-- > 0;) {
+      if (surplus_[node] == state_.excess[node]) continue;
+      ++report.unbalanced_nodes;
+      first = node;
     }
-    capacity += std::max<std::int64_t>(-terminal, 0);
-    for (std::uint32_t arc = network.firstArc(node); arc < network.firstArc(node + 1); ++arc) {
-      if (sides[network.head(arc)] == CutSide::Sink) capacity += network.capacity(arc);
+    addProblem(report, report.unbalanced_nodes,
+               "nodes whose excess is not terminal + inflow - outflow, the first is ", first);
+    return report;
+  }
+
+ private:
+  bool isSource(std::uint32_t node) const { return cut_.side(node) == CutSide::Source; }
+  void addSurplus(std::uint32_t node, std::int64_t amount) {
+    std::atomic_ref(surplus_[node]).fetch_add(amount, std::memory_order_relaxed);
+  }
+  static void lower(std::atomic<std::uint64_t>& least, std::uint64_t value) {
+    std::uint64_t now = least;
+    while (value < now && !least.compare_exchange_weak(now, value)) {
     }
   }
-  return capacity;
+  static void addProblem(CutReport& report, std::uint64_t count, const std::string& what,
+                         std::uint64_t first) {
+    if (count > 0) report.problems.push_back(std::to_string(count) + " " + what + std::to_string(first));
+  }
+
+  const State& state_;
+  const MinCut& cut_;
+  std::vector<std::int64_t> surplus_;
+  std::atomic<std::int64_t> capacity_ = 0, flow_ = 0;
+  std::atomic<std::uint64_t> overfull_ = 0, first_overfull_ = ~std::uint64_t{0};
+};
+
+void auditTile(const NetworkSource& source, const State& state, std::uint32_t tile, Auditor& auditor) {
+  TileCapacities values;
+  mincut::askForTile(source, state, tile, values);
+  for (std::uint64_t nodes = state.tiles[tile].nodes; nodes != 0; nodes &= nodes - 1) {
+    const auto slot = static_cast<std::uint32_t>(std::countr_zero(nodes));
+    auditor.addTerminal(tile * lattice::kSlots + slot, values.terminal[slot]);
+  }
+  mincut::forEachLatticeEdge(
+      state, tile, values,
+      [&](std::uint32_t from, std::uint32_t to, int d, std::int32_t capacity, std::int32_t reverse_capacity) {
+        auditor.addEdge({from, to, capacity, reverse_capacity}, state.residual[State::latticeArc(from, d)],
+                        state.residual[State::latticeArc(to, lattice::opposite(d))]);
+      });
 }
 
 void checkValues(const MinCut& cut, CutReport& report) {
@@ -83,12 +108,26 @@ void checkValues(const MinCut& cut, CutReport& report) {
 
 }  // namespace
 
-CutReport verify(const Network& network, const MinCut& cut) {
-  CutReport report;
-  if (!checkLengths(network, cut, report)) return report;
-  checkCapacities(network, cut, report);
-  checkConservation(network, cut, report);
-  report.cut_capacity = cutCapacity(network, cut.sides);
+CutReport verify(const NetworkSource& source, const Network& network, const MinCut& cut) {
+  const State& state = network.state();
+  if (source.tiles.size() != state.tileCount())
+    throw InvalidArgument("source", "has " + std::to_string(source.tiles.size()) +
+                                        " tiles, but the network has " + std::to_string(state.tileCount()));
+  if (cut.source.size() != state.tileCount()) {
+    CutReport report;
+    report.problems.push_back("the cut has labels for " + std::to_string(cut.source.size()) +
+                              " tiles, expected " + std::to_string(state.tileCount()));
+    return report;
+  }
+  Auditor auditor(state, cut);
+  parallelFor(state.tileCount(), mincut::kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (auto tile = static_cast<std::uint32_t>(begin); tile < end; ++tile)
+      auditTile(source, state, tile, auditor);
+  });
+  mincut::forEachListedEdge(state, source, [&](const NetworkEdge& edge, mincut::ArcCursor::Arcs arcs) {
+    auditor.addEdge(edge, state.arc_residual[arcs.arc], state.arc_residual[arcs.mate]);
+  });
+  CutReport report = auditor.report();
   checkValues(cut, report);
   return report;
 }

@@ -2,6 +2,7 @@
 #include "vdbfuse/octree/graph.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -13,31 +14,43 @@
 namespace vdbfuse {
 namespace {
 
-// Integer units per h² of ρ: the faces of a cell of 64 voxels then add up to less than 2³¹.
+/// Integer units per h² of ρ: the faces of a cell of 64 voxels then add up to less than 2³¹.
 constexpr double kScale = 32768.0;
 constexpr std::size_t kCellsPerTask = 4096;
+constexpr std::size_t kTilesPerTask = 256;
 
 bool touchesBorder(const Octree& octree, std::size_t cell, int axis, int direction) {
   const int low = octree.lowest(cell)[axis] - octree.origin[axis];
   return direction < 0 ? low == 0 : low + octree.side(cell) == octree.size[axis];
 }
 
-void appendFaces(const Octree& octree, std::size_t cell, std::vector<CellFace>& out) {
-  const int side = octree.side(cell);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const int direction : {-1, 1}) {
-      if (touchesBorder(octree, cell, axis, direction)) continue;
-      Index3 beyond = octree.lowest(cell);
-      beyond[axis] += direction * side;
-      const std::size_t other = *octree.find(beyond);
-      const int difference = octree.levels[other] - octree.levels[cell];
-      // Faces between unequal cells are listed by the smaller one, between equal ones by the lower one.
-      if (difference < 0 || (difference == 0 && direction < 0)) continue;
-      out.push_back({static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(other),
-                     static_cast<std::uint8_t>(axis), static_cast<std::int8_t>(direction),
-                     static_cast<std::uint16_t>(side * side)});
+/// Calls visit(node, neighbour, direction) for the faces between cells of a tile and their equals in +x, +y,
+/// +z.
+template <typename Visit>
+void forEachEqualFace(const CellTiles& tiles, std::uint32_t t, const Visit& visit) {
+  const NetworkTile& tile = tiles.tiles[t];
+  for (int d = 1; d < lattice::kDirections; d += 2) {
+    const int back = lattice::opposite(d);
+    const std::uint32_t next = tile.neighbours[static_cast<std::size_t>(d)];
+    const std::uint64_t beyond = next == kNoTile ? 0 : tiles.tiles[next].nodes;
+    std::uint64_t slots =
+        tile.nodes & (lattice::stepInside(tile.nodes, back) | lattice::stepAcross(beyond, back));
+    for (; slots != 0; slots &= slots - 1) {
+      const auto slot = static_cast<std::uint32_t>(std::countr_zero(slots));
+      const bool leaves = (lattice::leavingDirections(slot) >> d & 1) != 0;
+      visit(t * lattice::kSlots + slot,
+            (leaves ? next : t) * lattice::kSlots + lattice::neighbourSlot(slot, d), d);
     }
   }
+}
+
+/// Finest faces of a cell of this level.
+std::uint16_t faceArea(std::uint8_t level) { return static_cast<std::uint16_t>(1u << 2 * level); }
+
+CellFace faceOf(const CellTiles& tiles, std::uint32_t first, std::uint32_t second, int direction) {
+  return {tiles.cells[first], tiles.cells[second], static_cast<std::uint8_t>(direction / 2),
+          static_cast<std::int8_t>(lattice::isForward(direction) ? 1 : -1),
+          faceArea(tiles.levels[first / lattice::kSlots])};
 }
 
 // Faces of a cell on the border of the domain, in h².
@@ -64,36 +77,63 @@ std::int64_t terminal(const Octree& octree, std::size_t cell, double support, do
   return std::llround(value * kScale);
 }
 
-Network makeNetwork(const Octree& octree, const std::vector<CellFace>& faces,
-                    const std::vector<float>& support, const std::vector<float>& sigma,
-                    const CutOptions& options) {
-  std::vector<std::int64_t> terminals(octree.cellCount());
-  for (std::size_t c = 0; c < terminals.size(); ++c)
-    terminals[c] = terminal(octree, c, support[c], sigma[c], options);
-  return buildNetwork(std::move(terminals), [&](const auto& take) {
+/// What the cut's network is made of, shared by all that ask for it.
+struct Prices {
+  const Octree& octree;
+  const CellTiles& tiles;
+  const std::vector<float>& support;
+  const std::vector<float>& sigma;
+  CutOptions options;
+
+  std::int32_t of(std::uint32_t node, std::uint32_t neighbour, double area) const {
+    const double agreement = 0.5 * (support[tiles.cells[node]] + support[tiles.cells[neighbour]]);
+    return capacity(options.mu, agreement, area);
+  }
+
+  void fill(std::uint32_t tile, TileCapacities& values) const {
+    for (std::uint32_t slot = 0; slot < lattice::kSlots; ++slot) {
+      const std::uint32_t cell = tiles.cells[std::size_t{tile} * lattice::kSlots + slot];
+      if (cell != kNoCell)
+        values.terminal[slot] = terminal(octree, cell, support[cell], sigma[cell], options);
+    }
+    const double area = faceArea(tiles.levels[tile]);
+    forEachEqualFace(tiles, tile, [&](std::uint32_t node, std::uint32_t neighbour, int direction) {
+      const auto axis = static_cast<std::size_t>(direction / 2);
+      values.forward[axis][node % lattice::kSlots] = of(node, neighbour, area);
+    });
+    values.backward = values.forward;
+  }
+
+  void list(const std::function<void(std::span<const NetworkEdge>)>& take) const {
     std::vector<NetworkEdge> batch;
-    for (std::size_t begin = 0; begin < faces.size(); begin += kCellsPerTask) {
+    for (std::size_t begin = 0; begin < tiles.transitions.size(); begin += kCellsPerTask) {
       batch.clear();
-      for (std::size_t i = begin; i < std::min(begin + kCellsPerTask, faces.size()); ++i) {
-        const CellFace& face = faces[i];
-        const double agreement = 0.5 * (support[face.first] + support[face.second]);
-        const std::int32_t price = capacity(options.mu, agreement, face.area);
-        batch.push_back({face.first, face.second, price, price});
+      for (std::size_t i = begin; i < std::min(begin + kCellsPerTask, tiles.transitions.size()); ++i) {
+        const CellTransition& t = tiles.transitions[i];
+        const std::int32_t price = of(t.fine, t.coarse, faceArea(tiles.levels[t.fine / lattice::kSlots]));
+        batch.push_back({t.fine, t.coarse, price, price});
       }
       take(batch);
     }
-  });
-}
+  }
+};
 
-CutEnergy energyOf(const Octree& octree, const std::vector<CellFace>& faces,
-                   const std::vector<float>& support, const std::vector<float>& sigma,
-                   const std::vector<CellLabel>& labels, const CutOptions& options) {
+CutEnergy energyOf(const Prices& prices, const std::vector<CellLabel>& labels) {
+  const auto& [octree, tiles, support, sigma, options] = prices;
   const double h = octree.frame.voxel;
   CutEnergy energy;
-  for (const CellFace& face : faces) {
-    if (labels[face.first] == labels[face.second]) continue;
-    energy.surface += face.area * std::exp(-options.mu * 0.5 * (support[face.first] + support[face.second]));
+  const auto addFace = [&](std::uint32_t node, std::uint32_t neighbour, double area) {
+    const std::uint32_t a = tiles.cells[node], b = tiles.cells[neighbour];
+    if (labels[a] != labels[b])
+      energy.surface += area * std::exp(-options.mu * 0.5 * (support[a] + support[b]));
+  };
+  for (std::uint32_t t = 0; t < tiles.count(); ++t) {
+    const double area = faceArea(tiles.levels[t]);
+    forEachEqualFace(tiles, t,
+                     [&](std::uint32_t node, std::uint32_t next, int) { addFace(node, next, area); });
   }
+  for (const CellTransition& t : tiles.transitions)
+    addFace(t.fine, t.coarse, faceArea(tiles.levels[t.fine / lattice::kSlots]));
   for (std::size_t c = 0; c < labels.size(); ++c) {
     const bool inside = labels[c] == CellLabel::Inside;
     if (inside) {
@@ -137,37 +177,57 @@ std::vector<std::size_t> cellsWithSensors(const Octree& octree, const std::vecto
 
 }  // namespace
 
-std::vector<CellFace> cellFaces(const Octree& octree) {
-  std::vector<std::vector<CellFace>> parts(chunkCount(octree.cellCount(), kCellsPerTask));
-  parallelFor(octree.cellCount(), kCellsPerTask, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellFace>& part = parts[begin / kCellsPerTask];
-    for (std::size_t cell = begin; cell < end; ++cell) appendFaces(octree, cell, part);
+std::vector<CellFace> cellFaces(const Octree& octree) { return cellFaces(tileCells(octree)); }
+
+std::vector<CellFace> cellFaces(const CellTiles& tiles) {
+  std::vector<std::vector<CellFace>> parts(chunkCount(tiles.count(), kTilesPerTask));
+  parallelFor(tiles.count(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<CellFace>& part = parts[begin / kTilesPerTask];
+    for (auto tile = static_cast<std::uint32_t>(begin); tile < end; ++tile) {
+      forEachEqualFace(tiles, tile, [&](std::uint32_t node, std::uint32_t neighbour, int direction) {
+        part.push_back(faceOf(tiles, node, neighbour, direction));
+      });
+    }
   });
-  std::size_t total = 0;
+  std::size_t total = tiles.transitions.size();
   for (const auto& part : parts) total += part.size();
   std::vector<CellFace> faces;
   faces.reserve(total);
   for (const auto& part : parts) faces.insert(faces.end(), part.begin(), part.end());
+  for (const CellTransition& t : tiles.transitions)
+    faces.push_back(faceOf(tiles, t.fine, t.coarse, t.direction));
   return faces;
 }
 
-Labelling cutCells(const Octree& octree, const std::vector<CellFace>& faces,
-                   const std::vector<float>& support, const std::vector<float>& sigma,
-                   const CutOptions& options, const Progress& progress) {
+NetworkSource cutSource(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
+                        const std::vector<float>& sigma, const CutOptions& options) {
   if (!(options.lambda >= 0)) throw InvalidArgument("lambda", "must not be negative");
   if (!(options.mu >= 0)) throw InvalidArgument("mu", "must not be negative");
-  const Network network = makeNetwork(octree, faces, support, sigma, options);
+  NetworkSource source;
+  const Prices prices{octree, tiles, support, sigma, options};
+  source.tiles = tiles.tiles;
+  source.capacities = [prices](std::uint32_t tile, TileCapacities& values) { prices.fill(tile, values); };
+  source.edges = [prices](const auto& take) { prices.list(take); };
+  return source;
+}
+
+Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
+                   const std::vector<float>& sigma, const CutOptions& options, const Progress& progress) {
+  const NetworkSource source = cutSource(octree, tiles, support, sigma, options);
+  Network network = buildNetwork(source);
   const MinCut cut = solve(network, {CutTies::LargestSource}, progress);
   Labelling result;
-  result.certified = verify(network, cut).certified();
+  result.certified = verify(source, network, cut).certified();
   result.flow = cut.flow;
-  result.nodes = network.nodeCount();
-  result.arcs = network.arcCount();
+  result.nodes = octree.cellCount();
+  result.arcs = 2 * network.edgeCount();
   result.labels.resize(octree.cellCount());
-  std::transform(cut.sides.begin(), cut.sides.end(), result.labels.begin(), [](CutSide side) {
-    return side == CutSide::Source ? CellLabel::Outside : CellLabel::Inside;
-  });
-  result.energy = energyOf(octree, faces, support, sigma, result.labels, options);
+  for (std::uint32_t node = 0; node < tiles.cells.size(); ++node) {
+    if (tiles.cells[node] == kNoCell) continue;
+    result.labels[tiles.cells[node]] =
+        cut.side(node) == CutSide::Source ? CellLabel::Outside : CellLabel::Inside;
+  }
+  result.energy = energyOf({octree, tiles, support, sigma, options}, result.labels);
   return result;
 }
 

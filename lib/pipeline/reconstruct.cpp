@@ -23,7 +23,8 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
 
   timer.start("octree");
   const Octree octree = buildOctree(support, kSupported, domain, {options.max_level});
-  const std::vector<CellFace> faces = cellFaces(octree);
+  const CellTiles tiles = tileCells(octree);
+  const std::vector<CellFace> faces = cellFaces(tiles);
 
   timer.start("evidence");
   const EvidenceOptions evidence_options = evidenceOptions(domain, options);
@@ -32,7 +33,7 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   timer.start("cut");
   const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
   Labelling cut =
-      cutCells(octree, faces, sampleFinest(octree, support), sigma, cut_options, progress);  // (1)
+      cutCells(octree, tiles, sampleFinest(octree, support), sigma, cut_options, progress);  // (1)
   const CavityReport cavities =
       fillUnseenCavities(octree, faces, sensorPositions(judged), cut_options.border, cut.labels);
 

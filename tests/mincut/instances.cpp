@@ -11,18 +11,10 @@ namespace vdbfuse::test {
 namespace {
 
 constexpr std::int32_t kScale = 4096;  // capacity of an edge at rho = 1
-constexpr std::uint32_t kTile = 8;
-
 using Cell = std::array<std::uint32_t, 3>;
 
 struct Grid {
   std::uint32_t side;
-
-  std::uint32_t node(const Cell& c) const {
-    const std::uint32_t tiles = side / kTile;
-    const std::uint32_t tile = ((c[2] / kTile) * tiles + c[1] / kTile) * tiles + c[0] / kTile;
-    return tile * kTile * kTile * kTile + ((c[2] % kTile) * kTile + c[1] % kTile) * kTile + c[0] % kTile;
-  }
 };
 
 /// Distance to the bumpy ball in cells of a 128³ grid, positive outside, at half-cell position `p2` / 2.
@@ -81,17 +73,48 @@ std::int32_t scaled(double value) {
   return std::max<std::int32_t>(1, static_cast<std::int32_t>(std::lround(kScale * value)));
 }
 
-void addCell(Family family, const Grid& grid, const Cell& cell, Random& random, Instance& instance) {
-  const std::uint32_t node = grid.node(cell);
+/// Bits of three numbers below 2¹⁰ interleaved, x lowest.
+std::uint32_t morton(const Cell& cell) {
+  std::uint32_t code = 0;
+  for (std::uint32_t bit = 0; bit < 10; ++bit) {
+    for (std::uint32_t k = 0; k < 3; ++k) code |= (cell[k] >> bit & 1) << (3 * bit + k);
+  }
+  return code;
+}
+
+/// Tile numbers by raster position, in Morton order.
+std::vector<std::uint32_t> tileNumbers(std::uint32_t per_side) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
+  for (std::uint32_t i = 0; i < per_side * per_side * per_side; ++i)
+    order.emplace_back(morton({i % per_side, i / per_side % per_side, i / per_side / per_side}), i);
+  std::ranges::sort(order);
+  std::vector<std::uint32_t> numbers(order.size());
+  for (std::uint32_t number = 0; number < order.size(); ++number) numbers[order[number].second] = number;
+  return numbers;
+}
+
+void linkTiles(const std::vector<std::uint32_t>& numbers, std::uint32_t per_side, GridInstance& grid) {
+  grid.tiles.resize(numbers.size());
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) {
+    NetworkTile& tile = grid.tiles[numbers[i]];
+    tile.nodes = ~std::uint64_t{0};
+    std::uint32_t stride = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis, stride *= per_side) {
+      const std::uint32_t position = i / stride % per_side;
+      if (position > 0) tile.neighbours[2 * axis] = numbers[i - stride];
+      if (position + 1 < per_side) tile.neighbours[2 * axis + 1] = numbers[i + stride];
+    }
+  }
+}
+
+void setCell(Family family, const Grid& grid, const Cell& cell, std::uint32_t node, Random& random,
+             GridInstance& instance) {
   instance.terminals[node] = std::lround(kScale * terminalValue(family, grid, cell, random));
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     if (cell[axis] + 1 == grid.side) continue;
-    Cell next = cell;
-    ++next[axis];
     Cell middle2 = {2 * cell[0] + 1, 2 * cell[1] + 1, 2 * cell[2] + 1};
     ++middle2[axis];
-    const std::int32_t capacity = scaled(edgeValue(family, grid, middle2, random));
-    instance.edges.push_back({node, grid.node(next), capacity, capacity});
+    instance.capacities[axis][node] = scaled(edgeValue(family, grid, middle2, random));
   }
 }
 
@@ -115,18 +138,130 @@ std::string name(Family family) {
   return "";
 }
 
-Instance gridInstance(Family family, std::uint32_t side, std::uint64_t seed) {
+GridInstance gridInstance(Family family, std::uint32_t side, std::uint64_t seed) {
   const Grid grid{side};
-  Instance instance;
+  const std::uint32_t per_side = side / lattice::kSide;
+  const std::vector<std::uint32_t> numbers = tileNumbers(per_side);
+  GridInstance instance;
+  instance.side = side;
+  linkTiles(numbers, per_side, instance);
   instance.terminals.resize(std::size_t{side} * side * side);
-  instance.edges.reserve(3 * instance.terminals.size());
+  for (auto& capacities : instance.capacities) capacities.resize(instance.terminals.size());
   Random random(seed, static_cast<std::uint64_t>(family));
   for (std::uint32_t z = 0; z < side; ++z) {
     for (std::uint32_t y = 0; y < side; ++y) {
-      for (std::uint32_t x = 0; x < side; ++x) addCell(family, grid, {x, y, z}, random, instance);
+      for (std::uint32_t x = 0; x < side; ++x) {
+        const std::uint32_t tile = numbers[(z / 4 * per_side + y / 4) * per_side + x / 4];
+        const std::uint32_t node = tile * lattice::kSlots + z % 4 * 16 + y % 4 * 4 + x % 4;
+        setCell(family, grid, {x, y, z}, node, random, instance);
+      }
     }
   }
   return instance;
+}
+
+NetworkSource GridInstance::source() const {
+  NetworkSource source;
+  source.tiles = tiles;
+  source.capacities = [this](std::uint32_t tile, TileCapacities& values) {
+    const std::size_t begin = std::size_t{tile} * lattice::kSlots;
+    std::copy_n(terminals.begin() + static_cast<std::ptrdiff_t>(begin), lattice::kSlots,
+                values.terminal.begin());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::copy_n(capacities[axis].begin() + static_cast<std::ptrdiff_t>(begin), lattice::kSlots,
+                  values.forward[axis].begin());
+      values.backward[axis] = values.forward[axis];
+    }
+  };
+  return source;
+}
+
+Instance GridInstance::graph() const {
+  Instance graph;
+  graph.terminals = terminals;
+  graph.edges.reserve(3 * terminals.size());
+  for (std::uint32_t node = 0; node < terminals.size(); ++node) {
+    const std::uint32_t slot = node % lattice::kSlots;
+    for (int d = 1; d < lattice::kDirections; d += 2) {
+      const bool leaves = (lattice::leavingDirections(slot) >> d & 1) != 0;
+      const std::uint32_t tile =
+          leaves ? tiles[node / lattice::kSlots].neighbours[d] : node / lattice::kSlots;
+      if (tile == kNoTile) continue;
+      const std::int32_t capacity = capacities[static_cast<std::size_t>(d / 2)][node];
+      graph.edges.push_back(
+          {node, tile * lattice::kSlots + lattice::neighbourSlot(slot, d), capacity, capacity});
+    }
+  }
+  return graph;
+}
+
+MixedInstance mixedInstance(std::uint64_t seed) {
+  Random random(seed, 17);
+  MixedInstance instance;
+  const auto count = static_cast<std::uint32_t>(1 + random.below(4));
+  for (std::uint32_t t = 0; t < count; ++t) {
+    NetworkTile tile{.nodes = random.next() | random.next()};
+    const int axis = static_cast<int>(seed % 3);
+    if (t > 0) tile.neighbours[static_cast<std::size_t>(2 * axis)] = t - 1;
+    if (t + 1 < count) tile.neighbours[static_cast<std::size_t>(2 * axis + 1)] = t + 1;
+    instance.tiles.push_back(tile);
+    TileCapacities& values = instance.values.emplace_back();
+    for (std::size_t slot = 0; slot < lattice::kSlots; ++slot) {
+      values.terminal[slot] = random.below(3) == 0 ? static_cast<std::int64_t>(random.below(41)) - 20 : 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        values.forward[k][slot] = static_cast<std::int32_t>(random.below(8));
+        values.backward[k][slot] = static_cast<std::int32_t>(random.below(8));
+      }
+    }
+  }
+  const auto isNode = [&](std::uint32_t node) {
+    return (instance.tiles[node / lattice::kSlots].nodes >> node % lattice::kSlots & 1) != 0;
+  };
+  for (int i = 0; i < 60; ++i) {
+    const auto from = static_cast<std::uint32_t>(random.below(count * lattice::kSlots));
+    const auto to = static_cast<std::uint32_t>(random.below(count * lattice::kSlots));
+    if (from == to || !isNode(from) || !isNode(to)) continue;
+    instance.listed.push_back(
+        {from, to, static_cast<std::int32_t>(random.below(9)), static_cast<std::int32_t>(random.below(9))});
+  }
+  return instance;
+}
+
+NetworkSource MixedInstance::source() const {
+  NetworkSource source;
+  source.tiles = tiles;
+  source.capacities = [*this](std::uint32_t tile, TileCapacities& filled) { filled = values[tile]; };
+  source.edges = [*this](const auto& take) { take(listed); };
+  return source;
+}
+
+Instance MixedInstance::graph() const {
+  Instance graph;
+  graph.edges = listed;
+  graph.terminals.resize(tiles.size() * lattice::kSlots);
+  const auto isNode = [&](std::uint32_t node) {
+    return (tiles[node / lattice::kSlots].nodes >> node % lattice::kSlots & 1) != 0;
+  };
+  for (std::uint32_t node = 0; node < graph.terminals.size(); ++node) {
+    if (!isNode(node)) continue;
+    const std::uint32_t t = node / lattice::kSlots, slot = node % lattice::kSlots;
+    graph.terminals[node] = values[t].terminal[slot];
+    for (std::size_t axis = 0; axis < 3; ++axis) {  // by coordinates, not by the tables of the lattice
+      std::array<std::uint32_t, 3> cell = {slot % 4, slot / 4 % 4, slot / 16};
+      std::uint32_t tile = t;
+      if (++cell[axis] == 4) tile = tiles[t].neighbours[2 * axis + 1], cell[axis] = 0;
+      const std::uint32_t next = tile * lattice::kSlots + cell[0] + 4 * cell[1] + 16 * cell[2];
+      if (tile == kNoTile || !isNode(next)) continue;
+      graph.edges.push_back({node, next, values[t].forward[axis][slot], values[t].backward[axis][slot]});
+    }
+  }
+  return graph;
+}
+
+std::vector<CutSide> sidesOf(const MinCut& cut, std::size_t nodes) {
+  std::vector<CutSide> sides(nodes);
+  for (std::uint32_t node = 0; node < nodes; ++node) sides[node] = cut.side(node);
+  return sides;
 }
 
 Instance randomInstance(const RandomRange& range, std::uint64_t seed) {

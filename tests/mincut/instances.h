@@ -3,19 +3,35 @@
 // from.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "vdbfuse/mincut/network.h"
+#include "vdbfuse/mincut/solve.h"
 
 namespace vdbfuse::test {
 
+/// A general graph.
 struct Instance {
   std::vector<std::int64_t> terminals;
   std::vector<NetworkEdge> edges;
 
-  Network network() const { return buildNetwork(terminals, edges); }
+  NetworkSource source() const { return graphSource(terminals, edges); }
+};
+
+/// A grid of side³ cells in tiles of 4³, tiles in Morton order; edges along the axes, the same both ways.
+struct GridInstance {
+  std::uint32_t side = 0;
+  std::vector<NetworkTile> tiles;
+  std::vector<std::int64_t> terminals;                  ///< by node (64 · tile + slot)
+  std::array<std::vector<std::int32_t>, 3> capacities;  ///< by node, of the edge towards +x, +y, +z
+
+  /// On the lattice. Refers to this instance.
+  NetworkSource source() const;
+  /// The same with all edges listed.
+  Instance graph() const;
 };
 
 /// What the cells of a grid know of the surface. The surface is a bumpy ball in a cube; +: outside, source.
@@ -34,9 +50,20 @@ inline constexpr Family kFamilies[] = {Family::DenseNoisy,  Family::Carving,    
 
 std::string name(Family family);
 
-/// A grid of side³ nodes, numbered tile by tile (8³), with edges along the axes.
-/// REQUIRES: side a multiple of 8.
-Instance gridInstance(Family family, std::uint32_t side, std::uint64_t seed);
+/// REQUIRES: side a multiple of 4.
+GridInstance gridInstance(Family family, std::uint32_t side, std::uint64_t seed);
+
+/// A few tiles with holes in a row, with lattice edges, and listed edges between any nodes.
+struct MixedInstance {
+  std::vector<NetworkTile> tiles;
+  std::vector<TileCapacities> values;
+  std::vector<NetworkEdge> listed;
+
+  NetworkSource source() const;
+  /// All edges listed; empty slots become nodes on their own.
+  Instance graph() const;
+};
+MixedInstance mixedInstance(std::uint64_t seed);
 
 struct RandomRange {
   std::uint32_t nodes = 8;
@@ -44,6 +71,9 @@ struct RandomRange {
   std::int64_t terminal = 10;  ///< values in [−terminal, terminal]
   std::int32_t capacity = 10;  ///< values in [0, capacity]
 };
+
+/// Labels of nodes 0 … nodes−1.
+std::vector<CutSide> sidesOf(const MinCut& cut, std::size_t nodes);
 
 /// Edges between random nodes, parallel ones and zero capacities included; a third of the terminals is zero.
 Instance randomInstance(const RandomRange& range, std::uint64_t seed);

@@ -10,6 +10,7 @@
 #include "mincut/instances.h"
 #include "mincut/oracles.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/parallel.h"
 #include "vdbfuse/base/random.h"
 #include "vdbfuse/mincut/verify.h"
 
@@ -17,6 +18,7 @@ namespace vdbfuse {
 namespace {
 
 using test::Family;
+using test::GridInstance;
 using test::Instance;
 
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
@@ -27,13 +29,26 @@ std::string problems(const CutReport& report) {
   return all;
 }
 
-/// Solves, and fails the test if the certificate does.
-MinCut solveAndCheck(const Instance& instance, CutTies ties = CutTies::SmallestSource) {
-  const Network network = instance.network();
+MinCut solveAndCheck(const NetworkSource& source, CutTies ties = CutTies::SmallestSource) {
+  Network network = buildNetwork(source);
   MinCut cut = solve(network, {.ties = ties});
-  const CutReport report = verify(network, cut);
+  const CutReport report = verify(source, network, cut);
   EXPECT_TRUE(report.certified()) << problems(report);
   return cut;
+}
+
+/// Labels and flow; fails the test if the certificate does.
+struct Solution {
+  std::vector<CutSide> sides;
+  std::int64_t flow = 0;
+};
+Solution solveAndCheck(const Instance& instance, CutTies ties = CutTies::SmallestSource) {
+  const MinCut cut = solveAndCheck(instance.source(), ties);
+  return {test::sidesOf(cut, instance.terminals.size()), cut.flow};
+}
+Solution solveAndCheck(const GridInstance& instance, CutTies ties = CutTies::SmallestSource) {
+  const MinCut cut = solveAndCheck(instance.source(), ties);
+  return {test::sidesOf(cut, instance.terminals.size()), cut.flow};
 }
 
 /// A chain of `nodes` nodes; supply at the front, demand at the back.
@@ -47,7 +62,7 @@ Instance chain(std::uint32_t nodes, std::int64_t supply, std::int64_t demand, st
   return instance;
 }
 
-std::ptrdiff_t sourceCount(const MinCut& cut) { return std::ranges::count(cut.sides, CutSide::Source); }
+std::ptrdiff_t sourceCount(const Solution& cut) { return std::ranges::count(cut.sides, CutSide::Source); }
 
 /// The same network with node v called order[v].
 Instance renumbered(const Instance& instance, const std::vector<std::uint32_t>& order) {
@@ -68,8 +83,8 @@ TEST(Solve, FindsTheCutThatBruteForceFinds) {
                                      .capacity = seed % 3 == 0 ? 3 : 10};
     const Instance instance = test::randomInstance(range, seed);
     const test::AllCuts all = test::tryAllCuts(instance);
-    const MinCut smallest = solveAndCheck(instance, CutTies::SmallestSource);
-    const MinCut largest = solveAndCheck(instance, CutTies::LargestSource);
+    const Solution smallest = solveAndCheck(instance, CutTies::SmallestSource);
+    const Solution largest = solveAndCheck(instance, CutTies::LargestSource);
     ASSERT_EQ(smallest.flow, all.capacity) << "seed " << seed;
     ASSERT_EQ(smallest.sides, all.smallest_source) << "seed " << seed;
     ASSERT_EQ(largest.sides, all.largest_source) << "seed " << seed;
@@ -101,17 +116,58 @@ TEST(Solve, AgreesWithBoostOnRandomGraphs) {
 TEST(Solve, AgreesWithBoostOnGridsOfEveryFamily) {
   for (const Family family : test::kFamilies) {
     for (const std::uint32_t side : {16u, 40u}) {
-      const Instance instance = test::gridInstance(family, side, side);
-      const MinCut cut = solveAndCheck(instance);
-      EXPECT_EQ(cut.flow, test::BoostMaxFlow(instance).solve()) << test::name(family) << " " << side;
+      const GridInstance instance = test::gridInstance(family, side, side);
+      const Solution cut = solveAndCheck(instance);
+      EXPECT_EQ(cut.flow, test::BoostMaxFlow(instance.graph()).solve()) << test::name(family) << " " << side;
     }
   }
 }
 
+TEST(Solve, LatticeEdgesAndListedOnesGiveTheSameCut) {
+  for (const Family family : test::kFamilies) {
+    const GridInstance instance = test::gridInstance(family, 24, 5);
+    for (const CutTies ties : {CutTies::SmallestSource, CutTies::LargestSource}) {
+      const Solution lattice = solveAndCheck(instance, ties), graph = solveAndCheck(instance.graph(), ties);
+      EXPECT_EQ(lattice.flow, graph.flow) << test::name(family);
+      EXPECT_EQ(lattice.sides, graph.sides) << test::name(family);
+    }
+  }
+}
+
+TEST(Solve, TilesWithHolesAndMixedEdgesAreSolvedToo) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const test::MixedInstance instance = test::mixedInstance(seed);
+    const MinCut cut = solveAndCheck(instance.source());
+    const Instance graph = instance.graph();
+    EXPECT_EQ(cut.flow, test::BoostMaxFlow(graph).solve()) << "seed " << seed;
+    EXPECT_EQ(test::sidesOf(cut, graph.terminals.size()), solveAndCheck(graph).sides) << "seed " << seed;
+  }
+}
+
+TEST(Solve, GivesTheSameLabelsForAnyNumberOfThreads) {
+  for (const Family family : {Family::LowContrast, Family::OneSidedScan}) {
+    const GridInstance instance = test::gridInstance(family, 96, 6);  // more than one region
+    const auto run = [&](int threads) {
+      const ThreadLimit limit(threads);
+      const MinCut cut = solveAndCheck(instance.source());
+      EXPECT_EQ(cut.statistics.regions, threads > 1 ? 4u : 0u);
+      return cut.source;
+    };
+    const auto one = run(1);
+    EXPECT_EQ(one, run(2));
+    EXPECT_EQ(one, run(5));
+    EXPECT_EQ(test::sidesOf(solveAndCheck(instance.source()), 1000), [&] {
+      auto s = solveAndCheck(instance.graph()).sides;
+      s.resize(1000);
+      return s;
+    }());
+  }
+}
+
 TEST(Solve, AgreesWithBoostOnALargeGrid) {
-  const Instance instance = test::gridInstance(Family::Carving, 128, 1);
-  const MinCut cut = solveAndCheck(instance);
-  EXPECT_EQ(cut.flow, test::BoostMaxFlow(instance).solve());
+  const GridInstance instance = test::gridInstance(Family::Carving, 128, 1);
+  const Solution cut = solveAndCheck(instance);
+  EXPECT_EQ(cut.flow, test::BoostMaxFlow(instance.graph()).solve());
   EXPECT_GT(sourceCount(cut), 128 * 128 * 128 / 2);
   EXPECT_LT(sourceCount(cut), 128 * 128 * 128);
 }
@@ -125,9 +181,9 @@ TEST(Solve, CertifiesEveryFamilyOnALargeGrid) {
 
 TEST(Solve, BothTiesHaveTheSameFlowAndNestedSides) {
   for (const Family family : test::kFamilies) {
-    const Instance instance = test::gridInstance(family, 32, 3);
-    const MinCut smallest = solveAndCheck(instance, CutTies::SmallestSource);
-    const MinCut largest = solveAndCheck(instance, CutTies::LargestSource);
+    const GridInstance instance = test::gridInstance(family, 32, 3);
+    const Solution smallest = solveAndCheck(instance, CutTies::SmallestSource);
+    const Solution largest = solveAndCheck(instance, CutTies::LargestSource);
     EXPECT_EQ(smallest.flow, largest.flow);
     for (std::size_t node = 0; node < smallest.sides.size(); ++node) {
       EXPECT_LE(smallest.sides[node], largest.sides[node]) << test::name(family) << " node " << node;
@@ -136,22 +192,23 @@ TEST(Solve, BothTiesHaveTheSameFlowAndNestedSides) {
 }
 
 TEST(Solve, LabelsDoNotDependOnTheOrderOfNodesAndEdges) {
-  const Instance instance = test::gridInstance(Family::LowContrast, 24, 4);
+  const Instance instance = test::gridInstance(Family::LowContrast, 24, 4).graph();
   std::vector<std::uint32_t> order(instance.terminals.size());
   std::iota(order.begin(), order.end(), 0u);
   Random random(5);
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
-  const MinCut cut = solveAndCheck(instance);
-  const MinCut other = solveAndCheck(renumbered(instance, order));
+  const Solution cut = solveAndCheck(instance);
+  const Solution other = solveAndCheck(renumbered(instance, order));
   for (std::size_t node = 0; node < order.size(); ++node)
     ASSERT_EQ(cut.sides[node], other.sides[order[node]]);
 }
 
 TEST(Solve, AnEmptyNetworkHasAnEmptyCut) {
-  const MinCut cut = solveAndCheck({});
+  const Solution cut = solveAndCheck(Instance());
   EXPECT_EQ(cut.flow, 0);
   EXPECT_TRUE(cut.sides.empty());
-  EXPECT_EQ(solve(Network()).flow, 0);
+  Network empty;
+  EXPECT_EQ(solve(empty).flow, 0);
 }
 
 TEST(Solve, NodesWithoutEdgesGoWhereTheirTerminalSays) {
@@ -164,25 +221,25 @@ TEST(Solve, NodesWithoutEdgesGoWhereTheirTerminalSays) {
 }
 
 TEST(Solve, WithSupplyOnlyNothingIsCut) {
-  Instance instance = test::gridInstance(Family::Carving, 16, 1);
+  GridInstance instance = test::gridInstance(Family::Carving, 16, 1);
   for (std::int64_t& terminal : instance.terminals) terminal = std::abs(terminal) + 1;
-  const MinCut cut = solveAndCheck(instance);
+  const Solution cut = solveAndCheck(instance);
   EXPECT_EQ(cut.flow, 0);
   EXPECT_EQ(sourceCount(cut), std::ssize(instance.terminals));
 }
 
 TEST(Solve, WithDemandOnlyNothingIsCut) {
-  Instance instance = test::gridInstance(Family::Carving, 16, 1);
+  GridInstance instance = test::gridInstance(Family::Carving, 16, 1);
   for (std::int64_t& terminal : instance.terminals) terminal = -std::abs(terminal) - 1;
-  const MinCut cut = solveAndCheck(instance);
+  const Solution cut = solveAndCheck(instance);
   EXPECT_EQ(cut.flow, 0);
   EXPECT_EQ(sourceCount(cut), 0);
 }
 
 TEST(Solve, EdgesOfNoCapacitySeparate) {
-  Instance instance = test::gridInstance(Family::DenseNoisy, 16, 1);
-  for (NetworkEdge& edge : instance.edges) edge.capacity = edge.reverse_capacity = 0;
-  const MinCut cut = solveAndCheck(instance);
+  GridInstance instance = test::gridInstance(Family::DenseNoisy, 16, 1);
+  for (auto& capacities : instance.capacities) std::ranges::fill(capacities, 0);
+  const Solution cut = solveAndCheck(instance);
   EXPECT_EQ(cut.flow, 0);
   for (std::size_t node = 0; node < cut.sides.size(); ++node) {
     EXPECT_EQ(cut.sides[node] == CutSide::Source, instance.terminals[node] > 0);
@@ -190,15 +247,15 @@ TEST(Solve, EdgesOfNoCapacitySeparate) {
 }
 
 TEST(Solve, PartsThatAreNotConnectedAreCutOnTheirOwn) {
-  const Instance part = test::gridInstance(Family::DenseNoisy, 16, 1);
+  const Instance part = test::gridInstance(Family::DenseNoisy, 16, 1).graph();
   const auto nodes = static_cast<std::uint32_t>(part.terminals.size());
   Instance both = part;
   both.terminals.insert(both.terminals.end(), part.terminals.begin(), part.terminals.end());
   for (const NetworkEdge& e : part.edges) {
     both.edges.push_back({e.from + nodes, e.to + nodes, e.capacity, e.reverse_capacity});
   }
-  const MinCut one = solveAndCheck(part);
-  const MinCut two = solveAndCheck(both);
+  const Solution one = solveAndCheck(part);
+  const Solution two = solveAndCheck(both);
   EXPECT_EQ(two.flow, 2 * one.flow);
   EXPECT_TRUE(std::equal(one.sides.begin(), one.sides.end(), two.sides.begin() + nodes));
 }
@@ -233,7 +290,7 @@ TEST(Solve, WideEdgesBetweenSmallTerminalsDoNotMakeItRunForever) {
 TEST(Solve, ALongChainIsCutAtItsNarrowestEdge) {
   Instance instance = chain(100000, 1000, 1000, 50);
   instance.edges[70000].capacity = 7;
-  const MinCut cut = solveAndCheck(instance);
+  const Solution cut = solveAndCheck(instance);
   EXPECT_EQ(cut.flow, 7);
   EXPECT_EQ(sourceCount(cut), 70001);
 }
@@ -265,15 +322,29 @@ TEST(Solve, AStarWithManyArmsIsSolved) {
 }
 
 TEST(Solve, StopsWhenAskedTo) {
-  const Network network = test::gridInstance(Family::DenseNoisy, 48, 1).network();
+  const GridInstance instance = test::gridInstance(Family::Seeds, 48, 1);
+  Network network = buildNetwork(instance.source());
   int reports = 0;
   const Progress stop_at_third([&](std::string_view, double) { return ++reports < 3; });
   EXPECT_THROW(solve(network, {}, stop_at_third), Cancelled);
   EXPECT_EQ(reports, 3);
 }
 
+TEST(Solve, GoesOnFromWhereItWasStopped) {
+  const GridInstance instance = test::gridInstance(Family::LowContrast, 32, 1);
+  const NetworkSource source = instance.source();
+  Network network = buildNetwork(source);
+  int reports = 0;
+  EXPECT_THROW(solve(network, {}, Progress([&](std::string_view, double) { return ++reports < 12; })),
+               Cancelled);
+  const MinCut cut = solve(network);
+  EXPECT_TRUE(verify(source, network, cut).certified());
+  EXPECT_EQ(test::sidesOf(cut, instance.terminals.size()), solveAndCheck(instance).sides);
+}
+
 TEST(Solve, ReportsSharesBetweenZeroAndOne) {
-  const Network network = test::gridInstance(Family::Seeds, 48, 1).network();
+  const GridInstance instance = test::gridInstance(Family::Seeds, 48, 1);
+  Network network = buildNetwork(instance.source());
   std::vector<double> shares;
   solve(network, {}, Progress([&](std::string_view, double share) { return shares.push_back(share), true; }));
   EXPECT_GE(shares.size(), 3u);

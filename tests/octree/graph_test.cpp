@@ -94,7 +94,7 @@ double energyByVoxels(const Octree& octree, const std::vector<CellLabel>& labels
 // 2 × 1 × 4 cells of 8³ voxels, one of them divided into eight.
 struct TinyProblem {
   Octree octree;
-  std::vector<CellFace> faces;
+  CellTiles tiles;
   std::vector<float> support, sigma;
   CutOptions options;
   explicit TinyProblem(std::uint64_t seed) {
@@ -110,7 +110,7 @@ struct TinyProblem {
       }
     std::sort(cells.begin(), cells.end());
     for (const auto& [code, level] : cells) octree.codes.push_back(code), octree.levels.push_back(level);
-    faces = cellFaces(octree);
+    tiles = tileCells(octree);
     for (std::size_t c = 0; c < octree.cellCount(); ++c) {
       support.push_back(random.uniform() < 0.5 ? 0.0f : static_cast<float>(random.uniform(0, 2)));
       sigma.push_back(static_cast<float>(random.uniform(-12, 12)));
@@ -154,7 +154,7 @@ TEST(CutCells, TheEnergyIsTheSmallestOfAllLabellings) {
       best = std::min(best, energy);
     }
     const Labelling cut =
-        cutCells(problem.octree, problem.faces, problem.support, problem.sigma, problem.options);
+        cutCells(problem.octree, problem.tiles, problem.support, problem.sigma, problem.options);
     EXPECT_TRUE(cut.certified);
     const double found = problem.energy(cut.labels);
     const double unit = std::pow(problem.octree.frame.voxel, 2) / 32768;
@@ -167,7 +167,7 @@ TEST(CutCells, TheEnergyIsTheSmallestOfAllLabellings) {
 // A block of matter in the middle of nothing, both cheap to surround.
 struct Block {
   Octree octree = randomOctree(1).octree;
-  std::vector<CellFace> faces = cellFaces(octree);
+  CellTiles tiles = tileCells(octree);
   std::vector<float> support = std::vector<float>(octree.cellCount(), 0.0f);
   std::vector<float> sigma = std::vector<float>(octree.cellCount(), 0.0f);
 };
@@ -177,13 +177,13 @@ TEST(CutCells, WithoutEvidenceTheBorderDecides) {
   CutOptions options;
   options.lambda = 1;
   options.border = Border::Outside;
-  for (const CellLabel l : cutCells(b.octree, b.faces, b.support, b.sigma, options).labels)
+  for (const CellLabel l : cutCells(b.octree, b.tiles, b.support, b.sigma, options).labels)
     EXPECT_EQ(l, CellLabel::Outside);
   options.border = Border::Solid;
-  for (const CellLabel l : cutCells(b.octree, b.faces, b.support, b.sigma, options).labels)
+  for (const CellLabel l : cutCells(b.octree, b.tiles, b.support, b.sigma, options).labels)
     EXPECT_EQ(l, CellLabel::Inside);
   options.border = Border::Free;  // nothing decides: the smallest solid
-  for (const CellLabel l : cutCells(b.octree, b.faces, b.support, b.sigma, options).labels)
+  for (const CellLabel l : cutCells(b.octree, b.tiles, b.support, b.sigma, options).labels)
     EXPECT_EQ(l, CellLabel::Outside);
 }
 
@@ -192,7 +192,7 @@ TEST(CutCells, EvidenceIsClampedSoThatOnePlaceCannotHoldOutAgainstItsSurrounding
   b.sigma[*b.octree.find(b.octree.origin + b.octree.size / 2)] = -1e9f;
   CutOptions options;
   options.lambda = 0.01;  // at most 0.1 against six faces of 1
-  const Labelling cut = cutCells(b.octree, b.faces, b.support, b.sigma, options);
+  const Labelling cut = cutCells(b.octree, b.tiles, b.support, b.sigma, options);
   for (const CellLabel label : cut.labels) EXPECT_EQ(label, CellLabel::Outside);
 }
 
@@ -207,7 +207,7 @@ TEST(CutCells, GivesTheSameLabelsForOneAndTwoThreads) {
   options.lambda = 0.5;
   const auto run = [&](int threads) {
     const ThreadLimit limit(threads);
-    const Labelling cut = cutCells(octree, cellFaces(octree), support, sigma, options);
+    const Labelling cut = cutCells(octree, tileCells(octree), support, sigma, options);
     return std::pair(cut.labels, cut.flow);
   };
   EXPECT_EQ(run(1), run(2));
@@ -215,8 +215,8 @@ TEST(CutCells, GivesTheSameLabelsForOneAndTwoThreads) {
 
 TEST(CutCells, NegativeWeightsAreRefused) {
   const Block b;
-  EXPECT_THROW(cutCells(b.octree, b.faces, b.support, b.sigma, {-1.0, 1.0}), InvalidArgument);
-  EXPECT_THROW(cutCells(b.octree, b.faces, b.support, b.sigma, {1.0, -1.0}), InvalidArgument);
+  EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {-1.0, 1.0}), InvalidArgument);
+  EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {1.0, -1.0}), InvalidArgument);
 }
 
 // A solid shell around a hollow of the cell in the middle of a uniform grid of 5³ finest cells.

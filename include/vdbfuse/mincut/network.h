@@ -1,17 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 // The network a minimum cut is sought in: nodes joined by edges with a capacity each way, and one signed
 // terminal value a node in place of edges to a source and a sink.
+//
+// Nodes come in tiles of 64. On a lattice (cells of a grid, or of one level of an octree) a tile is a block
+// of 4³ cells whose edges need no list: they follow from the position (lattice.h). All other edges, between
+// the levels of an octree or in a general graph, are listed. Both kinds may meet in one network.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "vdbfuse/mincut/lattice.h"
+
 namespace vdbfuse {
 
-/// Joins `from` and `to`; a symmetric edge has capacity == reverse_capacity. Parallel edges add up.
+namespace mincut {
+struct State;
+}
+
+/// A node is called 64 · tile + slot.
+inline constexpr std::uint32_t kNoTile = 0xffffffff;
+
+struct NetworkTile {
+  std::uint64_t nodes = 0;  ///< bit s: there is a node in slot s
+  /// The tiles beyond the six faces, or kNoTile. Only read when the network has a lattice.
+  std::array<std::uint32_t, lattice::kDirections> neighbours = {kNoTile, kNoTile, kNoTile,
+                                                                kNoTile, kNoTile, kNoTile};
+};
+
+/// What one tile brings. Values of slots without a node, and of edges to such a slot, are ignored.
+struct TileCapacities {
+  /// Price of the node on the sink side when positive; minus the price on the source side when negative.
+  std::array<std::int64_t, lattice::kSlots> terminal{};
+  /// Edges towards +x, +y, +z: price of a cut with this node on the source side and the next on the sink side
+  /// …
+  std::array<std::array<std::int32_t, lattice::kSlots>, 3> forward{};
+  std::array<std::array<std::int32_t, lattice::kSlots>, 3> backward{};  ///< … and of the opposite cut
+};
+
+/// A listed edge. Parallel edges add up.
 struct NetworkEdge {
   std::uint32_t from = 0;
   std::uint32_t to = 0;
@@ -19,48 +51,68 @@ struct NetworkEdge {
   std::int32_t reverse_capacity = 0;  ///< price of the opposite cut
 };
 
-/// Compressed rows, never changed once built. Every edge is two arcs, each the other's mate; the arcs that
-/// leave node v are firstArc(v) … firstArc(v+1)−1. Nodes keep the caller's numbers, and an order in which
-/// neighbours are near each other in memory (Morton order for cells) makes the solver faster, not different.
+/// Hands over all listed edges, in batches of any size, by calling what it is given.
+using EdgeBatches = std::function<void(const std::function<void(std::span<const NetworkEdge>)>& take)>;
+
+/// A network as its maker knows it. It is asked, never copied: everything that is built, checked or updated
+/// asks again, and must be told the same.
+struct NetworkSource {
+  std::vector<NetworkTile> tiles;
+  /// Fills in one tile; called from several threads. The values come in zeroed.
+  std::function<void(std::uint32_t tile, TileCapacities& values)> capacities;
+  bool has_lattice = true;  ///< false: `forward` and `backward` are not read, and take no memory
+  EdgeBatches edges;        ///< may be empty; called several times: same edges, same order
+};
+
+/// A general graph: nodes 0 … terminals.size()−1, all edges listed. Keeps a reference to nothing but copies
+/// of the arguments.
+NetworkSource graphSource(std::vector<std::int64_t> terminals, EdgeBatches edges);
+NetworkSource graphSource(std::vector<std::int64_t> terminals, std::vector<NetworkEdge> edges);
+
+/// Terminals reach from −kLargestTerminal to kLargestTerminal. They are kept as they are: 64 bits hold them,
+/// so that none has to be clamped (which, done carelessly, makes new ties).
+inline constexpr std::int64_t kLargestTerminal = std::int64_t{1} << 56;
+
+/// A network with the flow that it carries: none at first, then what solve() leaves in it. Takes about 34
+/// bytes a lattice slot, and 12 bytes an arc (two arcs a listed edge) and 4 bytes a node with listed edges.
 class Network {
  public:
-  std::uint32_t nodeCount() const { return static_cast<std::uint32_t>(terminals_.size()); }
-  std::uint32_t arcCount() const { return static_cast<std::uint32_t>(heads_.size()); }
-  /// REQUIRES: node <= nodeCount(); firstArc(nodeCount()) == arcCount().
-  std::uint32_t firstArc(std::uint32_t node) const { return first_arcs_[node]; }
-  std::uint32_t head(std::uint32_t arc) const { return heads_[arc]; }
-  std::uint32_t mate(std::uint32_t arc) const { return mates_[arc]; }
-  std::int32_t capacity(std::uint32_t arc) const { return capacities_[arc]; }
-  /// Positive: supply from the source; negative: demand of the sink. Clamped as buildNetwork() says.
-  std::int64_t terminal(std::uint32_t node) const { return terminals_[node]; }
+  Network();
+  ~Network();
+  Network(const Network& other);
+  Network(Network&& other) noexcept;
+  Network& operator=(Network other) noexcept;
+
+  std::uint32_t tileCount() const;
+  /// Slots in use: the true number of nodes.
+  std::size_t nodeCount() const;
+  /// Lattice edges whose nodes both exist, and listed ones.
+  std::size_t edgeCount() const;
+  /// Terminal plus what flows in minus what flows out. REQUIRES: node < 64 · tileCount().
+  std::int64_t excess(std::uint32_t node) const;
   /// Memory held, bytes.
   std::size_t bytes() const;
 
+  mincut::State& state() { return *state_; }
+  const mincut::State& state() const { return *state_; }
+
  private:
-  friend class NetworkBuilder;
-  std::vector<std::uint32_t> first_arcs_{0};
-  std::vector<std::uint32_t> heads_;
-  std::vector<std::uint32_t> mates_;
-  std::vector<std::int32_t> capacities_;
-  std::vector<std::int64_t> terminals_;
+  std::unique_ptr<mincut::State> state_;
 };
 
-/// Hands over all edges, in batches of any size, by calling what it is given.
-using EdgeBatches = std::function<void(const std::function<void(std::span<const NetworkEdge>)>& take)>;
-
-/// Builds straight into the final arrays: `edges` is called twice (to count, then to place) and must hand
-/// over the same edges in the same order both times, so that no list of all edges is ever needed.
+/// Builds straight into the final arrays, tiles on several threads: no list of all edges is ever needed.
 ///
-/// `terminals` has one value a node. A cut pays terminals[v] for v on the sink side when it is positive, and
-/// −terminals[v] for v on the source side when it is negative. Terminals are clamped to the capacity of the
-/// edges that leave the node (enter it, for a negative one) plus one: this changes neither the value of a
-/// minimum cut nor which cuts are minimum. (Without the "plus one" new ties would appear.)
-///
-/// Throws InvalidArgument, naming the edge, for a node out of range, an edge from a node to itself or a
-/// negative capacity; for 2³¹ nodes or arcs and more; and when the two calls of `edges` differ in number.
-Network buildNetwork(std::vector<std::int64_t> terminals, const EdgeBatches& edges);
+/// Throws InvalidArgument, naming the tile or edge, for a neighbour that is not there or does not know of it,
+/// a negative capacity, a terminal out of range, an edge that joins a node to itself or to an empty slot; for
+/// 2²⁵ tiles or 2³⁰ listed edges and more; and when `edges` hands over other edges than the time before.
+Network buildNetwork(const NetworkSource& source);
 
-/// The same from one array.
-Network buildNetwork(std::vector<std::int64_t> terminals, std::span<const NetworkEdge> edges);
+/// Lets `network` have the capacities of `after` in place of those of `before`, and keeps the flow as far as
+/// they allow it; a solve() after it finds the cut of `after`, and is quick if little has changed. Tiles that
+/// are not in `changed` must be the same in both sources; listed edges may all differ in capacity. Both must
+/// have the nodes and the edges that the network was built with. Throws as buildNetwork() does; the network
+/// is to be thrown away then.
+void updateNetwork(Network& network, const NetworkSource& before, const NetworkSource& after,
+                   std::span<const std::uint32_t> changed);
 
 }  // namespace vdbfuse

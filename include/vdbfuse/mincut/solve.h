@@ -2,6 +2,7 @@
 // Minimum cut of a network, exact, in integers.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -27,37 +28,44 @@ struct SolveOptions {
 
 /// How much work a solve was. Counts, no times: the same network gives the same numbers.
 struct SolveStatistics {
+  std::uint64_t regions = 0;    ///< parts that were solved on their own before the whole
   std::uint64_t passes = 0;     ///< levels by which one of the forests grew
-  std::uint64_t scans = 0;      ///< nodes looked at in growth
-  std::uint64_t bridges = 0;    ///< arcs from the source forest to the sink forest that were filled
+  std::uint64_t tiles = 0;      ///< tiles looked at in growth
+  std::uint64_t scans = 0;      ///< nodes of theirs that were to be looked at
+  std::uint64_t bridges = 0;    ///< arcs between the forests that were filled
   std::uint64_t pushes = 0;     ///< arcs of the forests that flow was pushed along
   std::uint64_t adoptions = 0;  ///< orphans that found a parent
   std::uint64_t releases = 0;   ///< orphans that left their forest
   std::size_t bytes = 0;        ///< memory of the solver besides the network, its result included
 };
 
-/// A minimum cut and the pseudoflow that proves it (see verify.h).
+/// A minimum cut. The flow that proves it stays in the network (see verify.h).
 struct MinCut {
-  std::vector<CutSide> sides;  ///< one a node
+  std::vector<std::uint64_t>
+      source;  ///< a tile each: its nodes on the source side; bits of empty slots are 0
   /// Value of the maximum flow == capacity of the cut.
   std::int64_t flow = 0;
-  /// What each arc can still carry, in the network's order: residual[a] + residual[mate(a)] == capacity[a] +
-  /// capacity[mate(a)]. Unsigned, because a residual reaches the sum of two 31-bit capacities.
-  std::vector<std::uint32_t> residual;
-  /// One a node: terminal plus what flows in minus what flows out. Positive only on the source side (supply
-  /// that reaches no demand), negative only on the sink side (demand that is never met).
-  std::vector<std::int64_t> excess;
   SolveStatistics statistics;
+
+  CutSide side(std::uint32_t node) const {
+    const std::uint64_t tile = source[node / lattice::kSlots];
+    return (tile >> node % lattice::kSlots & 1) != 0 ? CutSide::Source : CutSide::Sink;
+  }
 };
 
-/// Finds a minimum cut. Deterministic: the labels do not depend on the number of threads (nor on the order of
-/// nodes and edges, ties being defined). Throws Cancelled when `progress` asks to stop.
+/// Finds a minimum cut, starting from the flow that the network carries and leaving a maximum one in it.
+/// Deterministic: the labels do not depend on the number of threads, on the flow at the start or on the order
+/// of nodes and edges, ties being defined. Throws Cancelled when `progress` asks to stop; the network then
+/// carries a valid flow, and another solve() goes on from there.
 ///
 /// Incremental breadth-first search with excesses, after Goldberg, Hed, Kaplan, Tarjan, Werneck, "Maximum
 /// flows by incremental breadth-first search", ESA 2011, and Goldberg, Hed, Kaplan, Kohli, Tarjan, Werneck,
-/// "Faster and more dynamic maximum flow by incremental breadth-first search", ESA 2015. Two things differ:
-/// no more is pushed from the source side than it can supply, so that the loop ends for all capacities, and
-/// forests are mended in batches.
-MinCut solve(const Network& network, const SolveOptions& options = {}, const Progress& progress = {});
+/// "Faster and more dynamic maximum flow by incremental breadth-first search", ESA 2015. Three things differ:
+/// no more is pushed from one side than it can supply, so that the loop ends for all capacities; forests are
+/// mended in batches; and fronts are sets of bits, so that a tile of 64 nodes is scanned in a few shifts.
+/// Large networks are first solved in regions, each on a thread (the first phase of Shekhovtsov and Hlaváč,
+/// "A distributed mincut/maxflow algorithm combining path augmentation and push-relabel", IJCV 2013), then as
+/// a whole.
+MinCut solve(Network& network, const SolveOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdbfuse/base/progress.h"
+#include "vdbfuse/octree/cell_tiles.h"
 #include "vdbfuse/octree/octree.h"
 
 namespace vdbfuse {
@@ -29,6 +30,7 @@ struct CellFace {
 };
 
 /// All pairs of cells that share a face, each once, in an order that does not depend on threads.
+std::vector<CellFace> cellFaces(const CellTiles& tiles);
 std::vector<CellFace> cellFaces(const Octree& octree);
 
 struct CutOptions {
@@ -53,11 +55,16 @@ struct Labelling {
 };
 
 /// The global minimum of (1) with the face-sharing graph's metric. `support`: C at each cell; `sigma`:
-/// evidence. ρ at a face is e^(−μ C) with C the mean of both sides. Capacities are integers: 2¹⁵ units per h²
-/// of ρ. Among minimal solids the smallest is returned. REQUIRES: arrays of octree.cellCount() values.
-Labelling cutCells(const Octree& octree, const std::vector<CellFace>& faces,
-                   const std::vector<float>& support, const std::vector<float>& sigma,
-                   const CutOptions& options, const Progress& progress = {});
+/// evidence. ρ at a face is e^(−μ C) with C the mean of both sides. Among minimal solids the smallest is
+/// returned. `tiles` are tileCells(octree). REQUIRES: arrays of octree.cellCount() values.
+Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
+                   const std::vector<float>& sigma, const CutOptions& options, const Progress& progress = {});
+
+/// The network of that cut: what cutCells() solves. Refers to its arguments. Capacities are integers, 2¹⁵
+/// units per h² of ρ, at least one: a cell of 64 voxels a side has faces of 2²⁷ units, and ρ down to e^(−8)
+/// keeps 1 % at every level. Throws InvalidArgument for a negative lambda or mu.
+NetworkSource cutSource(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
+                        const std::vector<float>& sigma, const CutOptions& options);
 
 struct CavityReport {
   std::size_t filled = 0;  ///< components

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Part of forests.h: roots, fronts and levels.
+#pragma once
+
+#include "forests.h"
+
+namespace vdbfuse::mincut {
+
+template <bool R>
+Forests<R>::Forests(State& state, ForestNodes& nodes, std::uint32_t first, std::uint32_t last,
+                    const Progress& progress)
+    : Flow(state, first, last), nodes_(nodes), first_(first), last_(last), progress_(progress) {
+  for (Frontier& frontier : frontiers_) frontier.fronts.resize(last - first);
+}
+
+template <bool R>
+void Forests<R>::maximiseFlow() {
+  for (std::uint32_t tile = first_; tile < last_; ++tile) {
+    const std::uint64_t givers = Flow::template members<Forest::Giver>(tile);
+    const std::uint64_t takers = Flow::template members<Forest::Taker>(tile);
+    if (givers != 0) addToFront<Forest::Giver>(tile, givers, 1);
+    if (takers != 0) addToFront<Forest::Taker>(tile, takers, 1);
+  }
+  const auto canGrow = [](const Frontier& f) { return !f.tiles[f.level & 1].empty(); };
+  while (canGrow(frontiers_[0]) && canGrow(frontiers_[1])) {
+    if (reluctance<Forest::Giver>() <= reluctance<Forest::Taker>()) {
+      growLevel<Forest::Giver>();
+    } else {
+      growLevel<Forest::Taker>();
+    }
+  }
+  statistics_.bytes = bytes();
+}
+
+/// The marked sources and sinks of the tile become roots, all other nodes free. The caller may do this for
+/// many tiles at once.
+template <bool R>
+void Forests<R>::plantTile(State& state, ForestNodes& nodes, std::uint32_t t) {
+  const Tile& tile = state.tiles[t];
+  const std::uint64_t givers = R ? tile.sink : tile.source, takers = R ? tile.source : tile.sink;
+  std::int32_t* level = &nodes.level[std::size_t{t} * lattice::kSlots];
+  for (std::uint32_t slot = 0; slot < lattice::kSlots; ++slot)
+    level[slot] =
+        static_cast<std::int32_t>(givers >> slot & 1) - static_cast<std::int32_t>(takers >> slot & 1);
+  std::fill_n(&nodes.parent[std::size_t{t} * lattice::kSlots], lattice::kSlots,
+              static_cast<std::uint8_t>(kRoot));
+}
+
+/// Forests of equal depth meet halfway and on short paths, and little is cut off from its root when an arc of
+/// such a path is filled; a wide shallow forest may wait a little while a narrow one grows. (Growing always
+/// the narrower one took up to 35 times the adoptions where evidence is sparse; strict turns scan every root
+/// in vain where it is dense.)
+template <bool R>
+template <Forest F>
+double Forests<R>::reluctance() {
+  const Frontier& deepest = frontier<F>();
+  const double level = deepest.level;
+  return level * level * level * level * static_cast<double>(deepest.sizes[deepest.level & 1]);
+}
+
+template <bool R>
+template <Forest F>
+void Forests<R>::addToFront(std::uint32_t tile, std::uint64_t nodes, std::int32_t depth) {
+  std::uint64_t& waiting = front<F>(tile, depth);
+  if (waiting == 0) frontier<F>().tiles[depth & 1].push_back(tile);
+  waiting |= nodes;
+  frontier<F>().sizes[depth & 1] += static_cast<std::uint64_t>(std::popcount(nodes));
+}
+
+/// Gives the node its place in the forest; on the deepest levels that makes it one to scan.
+template <bool R>
+template <Forest F>
+void Forests<R>::place(std::uint32_t node, Way way, std::int32_t depth) {
+  setParent(node, way);
+  nodes_.level[node] = levelAt<F>(depth);
+  Flow::template members<F>(tileOf(node)) |= bitOf(node);
+  const Frontier& deepest = frontier<F>();
+  if (depth == deepest.level || (deepest.growing && depth == deepest.level - 1))
+    addToFront<F>(tileOf(node), bitOf(node), depth);
+}
+
+/// Takes the node out of the forest and its fronts.
+template <bool R>
+template <Forest F>
+void Forests<R>::leave(std::uint32_t node) {
+  nodes_.level[node] = 0;
+  Flow::template members<F>(tileOf(node)) &= ~bitOf(node);
+  for (std::uint64_t& waiting : frontier<F>().fronts[tileOf(node) - first_].nodes) waiting &= ~bitOf(node);
+}
+
+template <bool R>
+template <Forest F>
+void Forests<R>::growLevel() {
+  ++statistics_.passes;
+  report();
+  Frontier& deepest = frontier<F>();
+  const std::int32_t depth = deepest.level++;
+  deepest.growing = true;
+  std::vector<std::uint32_t>& tiles = deepest.tiles[depth & 1];
+  for (std::size_t i = 0; i < tiles.size(); ++i) {  // grows while it runs
+    scanTile<F>(tiles[i], depth);
+    drain();
+  }
+  tiles.clear();
+  deepest.sizes[depth & 1] = 0;
+  deepest.growing = false;
+}
+
+/// Until no node of the tile's front has a way to a free node or to the other forest.
+template <bool R>
+template <Forest F>
+void Forests<R>::scanTile(std::uint32_t tile, std::int32_t depth) {
+  std::uint64_t& waiting = front<F>(tile, depth);
+  ++statistics_.tiles;
+  statistics_.scans += static_cast<std::uint64_t>(std::popcount(waiting));
+  while (waiting != 0) {
+    const std::uint64_t nodes = waiting;
+#pragma GCC unroll 6
+    for (int d = 0; d < lattice::kDirections; ++d) addFree<F>(tile, nodes, d, depth + 1);
+    bool changed = false;
+    for (std::uint64_t joined = waiting & s_.tiles[tile].joined; joined != 0; joined &= joined - 1) {
+      const auto slot = static_cast<std::uint32_t>(std::countr_zero(joined));
+      if ((waiting >> slot & 1) != 0) changed |= scanListed<F>(tile * lattice::kSlots + slot, depth);
+    }
+#pragma GCC unroll 6
+    for (int d = 0; d < lattice::kDirections; ++d) changed |= fillBridges<F>(tile, d, depth);
+    if (!changed) waiting = 0;
+  }
+}
+
+/// All these nodes of the tile become children, at this depth, of their neighbours in this direction.
+template <bool R>
+template <Forest F>
+void Forests<R>::join(std::uint32_t tile, std::uint64_t nodes, int direction, std::int32_t depth) {
+  Flow::template members<F>(tile) |= nodes;
+  addToFront<F>(tile, nodes, depth);
+  for (; nodes != 0; nodes &= nodes - 1) {
+    const std::size_t node =
+        std::size_t{tile} * lattice::kSlots + static_cast<unsigned>(std::countr_zero(nodes));
+    nodes_.level[node] = levelAt<F>(depth);
+    nodes_.parent[node] = static_cast<std::uint8_t>(direction);
+  }
+}
+
+template <bool R>
+template <Forest F>
+void Forests<R>::addFree(std::uint32_t t, std::uint64_t nodes, int direction, std::int32_t depth) {
+  constexpr bool kSource = Flow::template kIsSource<F>;
+  const int reverse = lattice::opposite(direction);
+  const Tile& tile = s_.tiles[t];
+  if (kSource) nodes &= tile.open[direction];
+  const auto freeIn = [&](const Tile& other, std::uint64_t reached) {
+    if (!kSource) reached &= other.open[reverse];
+    return reached & other.nodes & ~(other.source | other.sink);
+  };
+  const std::uint64_t inside = freeIn(tile, lattice::stepInside(nodes, direction));
+  if (inside != 0) join<F>(t, inside, reverse, depth);
+  if ((nodes & lattice::kFace[direction]) == 0) return;
+  const std::uint32_t next = tile.next[direction];
+  const std::uint64_t across = freeIn(s_.tiles[next], lattice::stepAcross(nodes, direction));
+  if (across != 0) join<F>(next, across, reverse, depth);
+}
+
+/// Those of the nodes that have a bridge in this direction.
+template <bool R>
+template <Forest F>
+std::uint64_t Forests<R>::contacts(std::uint32_t t, std::uint64_t nodes, int direction) {
+  constexpr bool kSource = Flow::template kIsSource<F>;
+  const int reverse = lattice::opposite(direction);
+  const Tile& tile = s_.tiles[t];
+  if (kSource) nodes &= tile.open[direction];
+  const auto others = [&](const Tile& other) {
+    return kSource ? other.sink : other.source & other.open[reverse];
+  };
+  std::uint64_t met = lattice::stepInside(others(tile), reverse);
+  if ((nodes & lattice::kFace[direction]) != 0)
+    met |= lattice::stepAcross(others(s_.tiles[tile.next[direction]]), reverse);
+  return nodes & met;
+}
+
+template <bool R>
+template <Forest F>
+bool Forests<R>::fillBridges(std::uint32_t tile, int direction, std::int32_t depth) {
+  const std::uint64_t& waiting = front<F>(tile, depth);
+  bool any = false;
+  while (const std::uint64_t nodes = contacts<F>(tile, waiting, direction)) {
+    bridge<F>(tile * lattice::kSlots + static_cast<std::uint32_t>(std::countr_zero(nodes)),
+              static_cast<Way>(direction));
+    any = true;
+  }
+  return any;
+}
+
+/// Scans the listed arcs of a node of the front; true if something was pushed.
+template <bool R>
+template <Forest F>
+bool Forests<R>::scanListed(std::uint32_t node, std::int32_t depth) {
+  const std::uint64_t& waiting = front<F>(tileOf(node), depth);
+  bool any = false;
+  anyListedArc(node, [&](std::uint32_t arc, std::uint32_t neighbour) {
+    const std::uint32_t mate = s_.mates[arc];
+    if (isIn<F>(neighbour) || !Flow::template hasRoomToParent<F>(mate)) return false;
+    if (nodes_.level[neighbour] != 0) {
+      bridge<F>(node, arc + kFirstListed);
+      any = true;
+      if ((waiting & bitOf(node)) == 0) return true;
+      if (nodes_.level[neighbour] != 0 || !Flow::template hasRoomToParent<F>(mate)) return false;
+    }
+    place<F>(neighbour, mate + kFirstListed, depth + 1);
+    return false;
+  });
+  return any;
+}
+
+}  // namespace vdbfuse::mincut

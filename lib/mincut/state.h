@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arrays of a network and the flow in it.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vdbfuse/mincut/lattice.h"
+#include "vdbfuse/mincut/network.h"
+
+namespace vdbfuse::mincut {
+
+/// Two cache lines; the first holds all that a step of a whole front needs.
+struct alignas(64) Tile {
+  std::uint64_t open[lattice::kDirections] = {};  ///< nodes whose lattice edge in this direction has residual
+  std::uint64_t source = 0;                       ///< nodes in the source forest
+  std::uint64_t sink = 0;                         ///< nodes in the sink forest
+  std::uint64_t nodes = 0;
+  std::uint64_t joined = 0;                       ///< nodes with listed edges
+  std::uint32_t next[lattice::kDirections] = {};  ///< tiles beyond the faces; tileCount(): none
+  std::uint32_t first_row = 0;                    ///< row of the first joined node
+};
+
+/// An array that is not touched before it is written, so that its pages are made by who fills them.
+template <typename T>
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(std::size_t size) : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
+  Buffer(const Buffer& other) : Buffer(other.size_) {
+    std::copy_n(other.values_.get(), size_, values_.get());
+  }
+  Buffer(Buffer&&) noexcept = default;
+  Buffer& operator=(Buffer other) noexcept {
+    values_ = std::move(other.values_);
+    size_ = other.size_;
+    return *this;
+  }
+  T& operator[](std::size_t i) { return values_[i]; }
+  const T& operator[](std::size_t i) const { return values_[i]; }
+  std::size_t size() const { return size_; }
+  T* begin() { return values_.get(); }
+  T* end() { return values_.get() + size_; }
+
+ private:
+  std::unique_ptr<T[]> values_;
+  std::size_t size_ = 0;
+};
+
+constexpr std::uint32_t tileOf(std::uint32_t node) { return node / lattice::kSlots; }
+constexpr std::uint32_t slotOf(std::uint32_t node) { return node % lattice::kSlots; }
+constexpr std::uint64_t bitOf(std::uint32_t node) { return std::uint64_t{1} << slotOf(node); }
+
+struct State {
+  /// One more than there are tiles: the last has no nodes and stands for what is beyond.
+  std::vector<Tile> tiles;
+  Buffer<std::uint32_t> residual;  ///< of lattice arcs: 6 · 64 a tile, by direction, then by slot
+  Buffer<std::int64_t> excess;     ///< 64 a tile: terminal + inflow − outflow
+  // Listed edges in compressed rows: one row a joined node, two arcs an edge, each the other's mate.
+  std::vector<std::uint32_t> row_starts{0};
+  Buffer<std::uint32_t> heads, mates, arc_residual;
+  std::uint64_t supply = 0;  ///< Σ max(terminal, 0), modulo 2⁶⁴
+  bool has_lattice = false;
+
+  std::uint32_t tileCount() const { return static_cast<std::uint32_t>(tiles.size() - 1); }
+  static std::size_t latticeArc(std::uint32_t node, int direction) {
+    return (std::size_t{tileOf(node)} * lattice::kDirections + static_cast<unsigned>(direction)) *
+               lattice::kSlots +
+           slotOf(node);
+  }
+  bool isJoined(std::uint32_t node) const { return (tiles[tileOf(node)].joined & bitOf(node)) != 0; }
+  /// REQUIRES: isJoined(node).
+  std::uint32_t row(std::uint32_t node) const {
+    const Tile& tile = tiles[tileOf(node)];
+    return tile.first_row + static_cast<std::uint32_t>(std::popcount(tile.joined & (bitOf(node) - 1)));
+  }
+  /// In this direction, or in a tile without nodes if there is nothing.
+  std::uint32_t neighbour(std::uint32_t node, int direction) const {
+    const std::uint32_t slot = slotOf(node);
+    const std::uint32_t tile = (lattice::leavingDirections(slot) >> direction & 1) != 0
+                                   ? tiles[tileOf(node)].next[direction]
+                                   : tileOf(node);
+    return tile * lattice::kSlots + lattice::neighbourSlot(slot, direction);
+  }
+};
+
+}  // namespace vdbfuse::mincut
