@@ -67,7 +67,7 @@ class Forests : LoadFlow<Reversed> {
  private:
   using Flow = LoadFlow<Reversed>;
   using Flow::addLoad, Flow::anyListedArc, Flow::around, Flow::back, Flow::head, Flow::isHere, Flow::load,
-      Flow::move, Flow::room, Flow::s_;
+      Flow::move, Flow::s_;
   static constexpr std::uint8_t kListed = 6;
 
   /// Nodes of one tile on a forest's two deepest levels that nobody has scanned yet, by the level's parity.
@@ -81,11 +81,6 @@ class Forests : LoadFlow<Reversed> {
     std::array<std::uint64_t, 2> sizes{};             ///< nodes that were put there
     std::int32_t level = 1;
     bool growing = false;
-  };
-  struct Step {
-    std::uint32_t node;
-    Way way;
-    std::uint32_t parent;
   };
   struct Parent {
     Way way = kNoWay;
@@ -183,11 +178,11 @@ class Forests : LoadFlow<Reversed> {
   std::uint32_t first_, last_;
   const Progress& progress_;
   std::array<Frontier, 2> frontiers_;
-  LevelQueue loads_;                     ///< nodes of the taker's forest with load to push on
-  std::array<LevelQueue, 2> orphans_;    ///< by forest
-  std::vector<std::uint32_t> detached_;  ///< orphans that could not keep their level
-  std::vector<std::uint32_t> loaded_;    ///< orphans with load
-  std::vector<Step> path_;               ///< from a bridge's tail to its root
+  LevelQueue loads_;                          ///< nodes of the taker's forest with load to push on
+  std::array<LevelQueue, 2> orphans_;         ///< by forest
+  std::vector<std::uint32_t> detached_;       ///< orphans that could not keep their level
+  std::vector<std::uint32_t> loaded_;         ///< orphans with load
+  std::vector<typename Flow::Passage> path_;  ///< from a bridge's tail to its root
   SolveStatistics statistics_;
 };
 

@@ -6,6 +6,10 @@
 
 namespace vdbfuse::mincut {
 
+/// Loads of so many tiles travel together. More of them overshoot where evidence is dense, fewer meet where
+/// it is sparse; between 1 and 500 the difference is 15 %.
+inline constexpr std::size_t kTilesPerDrain = 16;
+
 template <bool R>
 Forests<R>::Forests(State& state, ForestNodes& nodes, std::uint32_t first, std::uint32_t last,
                     const Progress& progress)
@@ -99,7 +103,7 @@ void Forests<R>::growLevel() {
   std::vector<std::uint32_t>& tiles = deepest.tiles[depth & 1];
   for (std::size_t i = 0; i < tiles.size(); ++i) {  // grows while it runs
     scanTile<F>(tiles[i], depth);
-    drain();
+    if (i % kTilesPerDrain == 0 || i + 1 == tiles.size()) drain();
   }
   tiles.clear();
   deepest.sizes[depth & 1] = 0;

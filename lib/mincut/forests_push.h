@@ -37,12 +37,11 @@ void Forests<R>::bridge(std::uint32_t node, Way way) {
 template <bool R>
 void Forests<R>::fillBridge(std::uint32_t tail, Way way, std::uint32_t tip) {
   ++statistics_.bridges;
-  while (isIn<Forest::Giver>(tail)) {
-    const std::uint32_t most = room(tail, way, tip);
-    if (most == 0) return;
-    const auto amount = static_cast<std::uint32_t>(std::min<std::int64_t>(most, supply(tail)));
+  const auto bridge = Flow::passage(tail, way, tip);
+  while (*bridge.room > 0 && isIn<Forest::Giver>(tail)) {
+    const auto amount = static_cast<std::uint32_t>(std::min<std::int64_t>(*bridge.room, supply(tail)));
     pull(tail, amount);
-    move(tail, way, tip, amount);
+    move(bridge, amount);
     arrive(tip, amount);
     mend<Forest::Giver>();
   }
@@ -55,8 +54,8 @@ std::int64_t Forests<R>::supply(std::uint32_t node) {
   path_.clear();
   for (Way way = wayToParent(node); way != kRoot; way = wayToParent(node)) {
     const std::uint32_t parent = head(node, way);
-    least = std::min<std::int64_t>(least, room(parent, back(way), node));
-    path_.push_back({node, way, parent});
+    path_.push_back(Flow::passage(parent, back(way), node));
+    least = std::min<std::int64_t>(least, *path_.back().room);
     node = parent;
   }
   return std::min(least, load(node));
@@ -65,9 +64,9 @@ std::int64_t Forests<R>::supply(std::uint32_t node) {
 template <bool R>
 void Forests<R>::pull(std::uint32_t node, std::uint32_t amount) {
   statistics_.pushes += path_.size();
-  for (const Step& step : path_) {
-    if (move(step.parent, back(step.way), step.node, amount)) orphan<Forest::Giver>(step.node);
-    node = step.parent;
+  for (const auto& step : path_) {
+    if (move(step, amount)) orphan<Forest::Giver>(step.to);
+    node = step.from;
   }
   addLoad(node, -std::int64_t{amount});
   if (load(node) == 0) orphan<Forest::Giver>(node);
@@ -106,8 +105,9 @@ void Forests<R>::pushRootwards(std::uint32_t node) {
   if (way == kRoot || way == kOrphan) return loseParent(node, way);
   ++statistics_.pushes;
   const std::uint32_t parent = head(node, way);
-  const auto amount = static_cast<std::uint32_t>(std::min<std::int64_t>(load(node), room(node, way, parent)));
-  const bool filled = move(node, way, parent, amount);
+  const auto up = Flow::passage(node, way, parent);
+  const auto amount = static_cast<std::uint32_t>(std::min<std::int64_t>(load(node), *up.room));
+  const bool filled = move(up, amount);
   addLoad(node, -std::int64_t{amount});
   arrive(parent, amount);
   if (filled) loseParent(node, way);

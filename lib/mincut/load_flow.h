@@ -68,10 +68,6 @@ class LoadFlow {
     return isListed(way) ? s_.arc_residual[way - kFirstListed]
                          : s_.residual[State::latticeArc(node, static_cast<int>(way))];
   }
-  /// How much load can move along `way` to `neighbour`.
-  std::uint32_t room(std::uint32_t node, Way way, std::uint32_t neighbour) {
-    return Reversed ? residual(neighbour, back(way)) : residual(node, way);
-  }
   /// Bit d: load can move towards a parent of forest F in direction d (from a giver's parent: towards here).
   template <Forest F>
   std::uint32_t roomsToParent(std::uint32_t node, const Around& neighbours) const {
@@ -96,10 +92,32 @@ class LoadFlow {
   std::int64_t load(std::uint32_t node) const { return Reversed ? -s_.excess[node] : s_.excess[node]; }
   void addLoad(std::uint32_t node, std::int64_t amount) { s_.excess[node] += Reversed ? -amount : amount; }
 
+  /// A way between two nodes, and where its residuals are.
+  struct Passage {
+    std::uint32_t from, to;  ///< load moves from here to there
+    Way way, way_back;
+    std::uint32_t* room;  ///< how much can move
+    std::uint32_t* room_back;
+  };
+  Passage passage(std::uint32_t node, Way way, std::uint32_t neighbour) {
+    const Way way_back = back(way);
+    std::uint32_t* there = &residual(node, way);
+    std::uint32_t* here = &residual(neighbour, way_back);
+    return {node, neighbour, way, way_back, Reversed ? here : there, Reversed ? there : here};
+  }
+
   /// Moves load; true if that fills the way. Loads of both ends are the caller's.
-  bool move(std::uint32_t node, Way way, std::uint32_t neighbour, std::uint32_t amount) {
-    return Reversed ? push(neighbour, back(way), node, way, amount)
-                    : push(node, way, neighbour, back(way), amount);
+  bool move(const Passage& passage, std::uint32_t amount) {
+    const bool opens = *passage.room_back == 0;
+    *passage.room -= amount;
+    *passage.room_back += amount;
+    const bool fills = *passage.room == 0;
+    if (isListed(passage.way) || !(opens || fills)) return fills;
+    std::uint64_t& there = s_.tiles[tileOf(passage.from)].open[passage.way];
+    std::uint64_t& here = s_.tiles[tileOf(passage.to)].open[passage.way_back];
+    if (opens) Reversed ? there |= bitOf(passage.from) : here |= bitOf(passage.to);
+    if (fills) Reversed ? here &= ~bitOf(passage.to) : there &= ~bitOf(passage.from);
+    return fills;
   }
 
   /// Calls visit(arc, neighbour) for the listed arcs of a joined node that stay here, until it says stop.
@@ -115,17 +133,6 @@ class LoadFlow {
   State& s_;
 
  private:
-  bool push(std::uint32_t from, Way way, std::uint32_t to, Way opposite_way, std::uint32_t amount) {
-    std::uint32_t& left = residual(from, way);
-    left -= amount;
-    residual(to, opposite_way) += amount;
-    if (!isListed(way)) {
-      s_.tiles[tileOf(to)].open[opposite_way] |= bitOf(to);
-      if (left == 0) s_.tiles[tileOf(from)].open[way] &= ~bitOf(from);
-    }
-    return left == 0;
-  }
-
   std::uint32_t first_, count_;
 };
 

@@ -12,16 +12,21 @@ namespace {
 
 constexpr std::size_t kTilesPerTask = 1024;
 
+/// So that the sum over all nodes there can be fits in 64 bits.
+constexpr std::int64_t kMost = std::int64_t{1} << 30;
+
 std::int64_t markTile(State& state, std::uint32_t t) {
   const std::int64_t* excess = &state.excess[std::size_t{t} * lattice::kSlots];
   std::uint64_t source = 0, sink = 0;
+  std::int64_t sum = 0;
   for (std::uint32_t slot = 0; slot < lattice::kSlots; ++slot) {  // sign bits: no branches
     sink |= static_cast<std::uint64_t>(excess[slot]) >> 63 << slot;
     source |= static_cast<std::uint64_t>(-excess[slot]) >> 63 << slot;
+    sum += std::clamp(excess[slot], -kMost, kMost);
   }
   state.tiles[t].source = source;
   state.tiles[t].sink = sink;
-  return std::popcount(source) - std::popcount(sink);
+  return sum;
 }
 
 class Settler {
@@ -88,13 +93,13 @@ class Settler {
 }  // namespace
 
 std::int64_t markRoots(State& state) {
-  std::atomic<std::int64_t> more_sources = 0;
+  std::atomic<std::int64_t> total = 0;
   parallelFor(state.tileCount(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
-    std::int64_t more = 0;
-    for (std::size_t t = begin; t < end; ++t) more += markTile(state, static_cast<std::uint32_t>(t));
-    more_sources += more;
+    std::int64_t sum = 0;
+    for (std::size_t t = begin; t < end; ++t) sum += markTile(state, static_cast<std::uint32_t>(t));
+    total += sum;
   });
-  return more_sources;
+  return total;
 }
 
 void settleNeighbours(State& state, std::uint32_t first, std::uint32_t last) {

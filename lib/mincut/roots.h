@@ -8,7 +8,8 @@
 
 namespace vdbfuse::mincut {
 
-/// Tells source and sink nodes of all tiles from their excesses; how many more sources there are than sinks.
+/// Tells source and sink nodes of all tiles from their excesses; returns the sum of all excesses, each
+/// clamped to ±2³⁰: whether there is more to give or more to take.
 std::int64_t markRoots(State& state);
 
 /// Excesses next to deficits need no search to find each other: one sweep in memory order over the tiles

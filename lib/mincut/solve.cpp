@@ -99,8 +99,8 @@ MinCut solve(Network& network, const SolveOptions& options, const Progress& prog
   State& state = network.state();
   progress.report("minimum cut", 0.0);
   MinCut cut;
-  // The giver should be the side with more roots: what it gives is then found close by, and the taker, in
-  // whose forest loads travel together, is the one that is reached from afar.
+  // The giver should be the side that has more: its roots are seldom used up, each on its own, and those of
+  // the taker, which are, are used up by loads that travel together.
   const bool reversed = mincut::markRoots(state) < 0;
   cut.statistics = reversed ? maximiseFlow<true>(state, progress) : maximiseFlow<false>(state, progress);
   const bool smallest = options.ties == CutTies::SmallestSource;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Minimum cut against Boost's Boykov–Kolmogorov, in one run on the same instances:
-//   mincut_benchmark [--grid SIDE]... [--octree RESOLUTION]... [--repetitions 5] [--family NAME] [--threads
-//   N]
-//                    [--no-peer]
+// Minimum cut against Boost's Boykov–Kolmogorov, in one run on the same instances (--help lists the options).
 // Processor time of the solve alone, median; both get their network ready-made (Boost's in compressed rows,
 // which is its fastest). "build" and "verify" are ours. "wall" is the solve by the clock. Fails when a
 // certificate or the two flows do.
 #include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,6 +21,7 @@
 #include "mincut/oracles.h"
 #include "octree/octree_instances.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/mincut/dimacs.h"
 #include "vdbfuse/mincut/solve.h"
 #include "vdbfuse/mincut/verify.h"
 
@@ -34,6 +35,8 @@ struct Settings {
   int threads = 1;
   bool peer = true;
   std::string family;
+  std::filesystem::path folder;  ///< to write instances to
+  std::vector<std::filesystem::path> files;
 };
 
 struct Time {
@@ -59,6 +62,11 @@ Time median(int repetitions, const std::function<void()>& prepare, const std::fu
 
 bool measure(const std::string& name, const NetworkSource& source,
              const std::function<test::Instance()>& graph, const Settings& settings) {
+  if (!settings.folder.empty()) {
+    const test::Instance instance = graph();
+    std::ofstream file(settings.folder / (name + ".max"));
+    writeDimacs({instance.terminals, instance.edges, 0}, file);
+  }
   const ThreadLimit limit(settings.threads);
   Network network, built;
   MinCut cut;
@@ -77,7 +85,7 @@ bool measure(const std::string& name, const NetworkSource& source,
   }
   const auto perNode = [&](std::uint64_t count) { return static_cast<double>(count) / 1e6 / millions; };
   const bool proven = certified && boost_flow == cut.flow;
-  std::printf("%-18s %6.2f %8.4f %8.4f %8.4f %8.4f %8.4f %7.2f %7.1f %6.2f %6.2f %6.2f  %s\n", name.c_str(),
+  std::printf("%-22s %6.2f %8.4f %8.4f %8.4f %8.4f %8.4f %7.2f %7.1f %6.2f %6.2f %6.2f  %s\n", name.c_str(),
               millions, build.cpu / millions, check.cpu / millions, ours.cpu / millions, ours.wall / millions,
               theirs / millions, theirs / ours.cpu, perNode(network.bytes() + cut.statistics.bytes),
               perNode(cut.statistics.scans), perNode(cut.statistics.pushes),
@@ -86,44 +94,27 @@ bool measure(const std::string& name, const NetworkSource& source,
   return proven;
 }
 
-bool parse(int argc, char** argv, Settings& settings) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (word == "--no-peer") {
-      settings.peer = false;
-      continue;
-    }
-    if (++i == argc) return false;
-    if (word == "--grid")
-      settings.grids.push_back(std::atoi(argv[i]));
-    else if (word == "--octree")
-      settings.octrees.push_back(std::atoi(argv[i]));
-    else if (word == "--repetitions")
-      settings.repetitions = std::max(1, std::atoi(argv[i]));
-    else if (word == "--threads")
-      settings.threads = std::atoi(argv[i]);
-    else if (word == "--family")
-      settings.family = argv[i];
-    else
-      return false;
-  }
-  if (settings.grids.empty() && settings.octrees.empty()) settings.grids = {128}, settings.octrees = {256};
-  return std::ranges::all_of(settings.grids, [](int side) { return side >= 4 && side % 4 == 0; });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   Settings settings;
-  if (!parse(argc, argv, settings)) {
-    std::fprintf(stderr,
-                 "usage: mincut_benchmark [--grid SIDE, a multiple of 4] [--octree RESOLUTION] "
-                 "[--repetitions N] [--family NAME] [--threads N] [--no-peer]\n");
-    return 2;
-  }
-  std::printf("%-18s %6s %8s %8s %8s %8s %8s %7s %7s %6s %6s %6s\n", "instance", "Mnodes", "build", "verify",
+  CLI::App app("Minimum cut against Boost's Boykov-Kolmogorov, on the same instances in one run");
+  app.add_option("--grid", settings.grids, "grids of so many cells a side, a multiple of 4");
+  app.add_option("--octree", settings.octrees, "octrees of so many finest voxels a side");
+  app.add_option("--read", settings.files, "files in DIMACS format")->check(CLI::ExistingFile);
+  app.add_option("--write", settings.folder, "write every instance here, in DIMACS format")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--family", settings.family, "only this one");
+  app.add_option("--repetitions", settings.repetitions, "medians of so many solves")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--threads", settings.threads, "of our solver");
+  app.add_flag("!--no-peer", settings.peer, "without Boost");
+  CLI11_PARSE(app, argc, argv);
+  if (settings.grids.empty() && settings.octrees.empty() && settings.files.empty())
+    settings.grids = {128}, settings.octrees = {256};
+  std::printf("%-22s %6s %8s %8s %8s %8s %8s %7s %7s %6s %6s %6s\n", "instance", "Mnodes", "build", "verify",
               "solve", "wall", "Boost", "ratio", "bytes", "scans", "pushes", "adopt");
-  std::printf("%-18s %6s %44s %7s %7s %20s\n", "", "", "seconds a million nodes", "", "a node", "per node");
+  std::printf("%-22s %6s %44s %7s %7s %20s\n", "", "", "seconds a million nodes", "", "a node", "per node");
   bool all_proven = true;
   const auto chosen = [&](const std::string& name) {
     return settings.family.empty() || settings.family == name;
@@ -133,7 +124,7 @@ int main(int argc, char** argv) {
       if (!chosen(test::name(family))) continue;
       const test::GridInstance instance = test::gridInstance(family, static_cast<std::uint32_t>(side), 1);
       all_proven &= measure(
-          test::name(family) + " " + std::to_string(side), instance.source(),
+          test::name(family) + "-" + std::to_string(side), instance.source(),
           [&] { return instance.graph(); }, settings);
     }
   }
@@ -142,9 +133,19 @@ int main(int argc, char** argv) {
       if (!chosen(test::name(family))) continue;
       const test::OctreeInstance instance = test::octreeInstance(family, resolution, 1);
       all_proven &= measure(
-          test::name(family) + " oct" + std::to_string(resolution), instance.source(),
+          test::name(family) + "-octree-" + std::to_string(resolution), instance.source(),
           [&] { return instance.graph(); }, settings);
     }
+  }
+  for (const std::filesystem::path& path : settings.files) {
+    std::ifstream file(path);
+    const MaxFlowProblem problem = readDimacs(file, path);
+    all_proven &= measure(
+        path.stem().string(), problem.source(),
+        [&] {
+          return test::Instance{problem.terminals, problem.edges};
+        },
+        settings);
   }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

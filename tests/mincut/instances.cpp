@@ -34,8 +34,9 @@ bool inShadow(const Grid& grid, const Cell& cell, double distance) {
   return cell[0] > grid.side / 2 && y * y + z * z < 0.09;
 }
 
-double oneSided(const Grid& grid, const Cell& cell, double distance, Random& random) {
-  if (inShadow(grid, cell, distance)) return -0.08 * random.uniform() * 128.0 / grid.side;
+/// `shadow`: evidence in a cell of a 128³ grid that nobody saw.
+double oneSided(const Grid& grid, const Cell& cell, double distance, double shadow, Random& random) {
+  if (inShadow(grid, cell, distance)) return shadow * 128.0 / grid.side;
   return 0.6 + 0.2 * random.normal();
 }
 
@@ -54,9 +55,11 @@ double terminalValue(Family family, const Grid& grid, const Cell& cell, Random& 
     case Family::LowContrast:
       return border || random.uniform() < 0.04 ? 60.0 * std::clamp(distance, -1.0, 1.0) : 0.0;
     case Family::OneSidedScan:
-      return oneSided(grid, cell, distance, random);
+      return oneSided(grid, cell, distance, -0.004, random);
     case Family::OneSidedGap:
-      return -oneSided(grid, cell, distance, random);
+      return -oneSided(grid, cell, distance, -0.004, random);
+    case Family::OneSidedStrong:
+      return oneSided(grid, cell, distance, -0.08 * random.uniform(), random);
   }
   return 0.0;
 }
@@ -134,6 +137,8 @@ std::string name(Family family) {
       return "OneSidedScan";
     case Family::OneSidedGap:
       return "OneSidedGap";
+    case Family::OneSidedStrong:
+      return "OneSidedStrong";
   }
   return "";
 }

@@ -40,13 +40,15 @@ enum class Family {
   Carving,       ///< free space strong, the inside only a weak ballooning
   Seeds,         ///< nothing but the border of the cube and a small ball in the middle: long paths
   LowContrast,   ///< edges nearly alike, a value in one cell of twenty-five
-  OneSidedScan,  ///< seen from one side; everything behind the surface is weakly inside, its edges at their
-                 ///< highest
-  OneSidedGap,   ///< the mirror image: what nobody saw is weakly outside
+  OneSidedScan,  ///< seen from one side; everything behind the surface is slightly inside, its edges at their
+                 ///< highest: Boykov–Kolmogorov takes twenty times its usual time
+  OneSidedGap,   ///< the mirror image: what nobody saw is slightly outside
+  OneSidedStrong,  ///< the same with twenty times the evidence in the shadow
 };
 
-inline constexpr Family kFamilies[] = {Family::DenseNoisy,  Family::Carving,      Family::Seeds,
-                                       Family::LowContrast, Family::OneSidedScan, Family::OneSidedGap};
+inline constexpr Family kFamilies[] = {Family::DenseNoisy,    Family::Carving,      Family::Seeds,
+                                       Family::LowContrast,   Family::OneSidedScan, Family::OneSidedGap,
+                                       Family::OneSidedStrong};
 
 std::string name(Family family);
 
