@@ -184,6 +184,7 @@ class Forests : LoadFlow<Reversed> {
   std::vector<std::uint32_t> loaded_;         ///< orphans with load
   std::vector<typename Flow::Passage> path_;  ///< from a bridge's tail to its root
   SolveStatistics statistics_;
+  std::array<std::uint64_t, 2> mended_{};  ///< by forest: orphans that could not keep their level
 };
 
 }  // namespace vdbfuse::mincut

@@ -52,6 +52,7 @@ void Forests<R>::keepOrDetach(std::uint32_t node) {
   orphanChildren<F>(node, depth_now, neighbours);
   leave<F>(node);
   detached_.push_back(node);
+  ++mended_[static_cast<std::size_t>(F)];
 }
 
 /// Bit d: the neighbour in direction d is at this level.
