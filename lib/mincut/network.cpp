@@ -29,9 +29,10 @@ constexpr std::uint64_t kMaxEdges = std::uint64_t{1} << 30;
 void makeTiles(const NetworkSource& source, State& state) {
   const std::size_t count = source.tiles.size();
   if (count >= kMaxTiles) throw InvalidArgument("tiles", "2^25 tiles or more");
-  state.tiles.resize(count + 1);
+  state.tiles = mincut::Buffer<Tile>(count + 1);
+  std::ranges::fill(state.tiles, Tile{});
   state.has_lattice = source.has_lattice;
-  std::ranges::fill(state.tiles.back().next, static_cast<std::uint32_t>(count));
+  std::ranges::fill(state.tiles[count].next, static_cast<std::uint32_t>(count));
   for (std::size_t t = 0; t < count; ++t) {
     state.tiles[t].nodes = source.tiles[t].nodes;
     for (int d = 0; d < lattice::kDirections; ++d) {
@@ -147,7 +148,8 @@ NetworkSource graphSource(std::vector<std::int64_t> terminals, std::vector<Netwo
 }
 
 Network::Network() : state_(std::make_unique<State>()) {
-  state_->tiles.resize(1);
+  state_->tiles = mincut::Buffer<Tile>(1);
+  state_->tiles[0] = Tile{};
   state_->excess = mincut::Buffer<std::int64_t>(lattice::kSlots);
   std::ranges::fill(state_->excess, 0);
 }
@@ -163,7 +165,8 @@ std::uint32_t Network::tileCount() const { return state_->tileCount(); }
 
 std::size_t Network::nodeCount() const {
   std::size_t nodes = 0;
-  for (const Tile& tile : state_->tiles) nodes += static_cast<std::size_t>(std::popcount(tile.nodes));
+  for (std::uint32_t t = 0; t < tileCount(); ++t)
+    nodes += static_cast<std::size_t>(std::popcount(state_->tiles[t].nodes));
   return nodes;
 }
 

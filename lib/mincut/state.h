@@ -5,9 +5,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "buffer.h"
 #include "vdbfuse/mincut/lattice.h"
 #include "vdbfuse/mincut/network.h"
 
@@ -24,39 +24,13 @@ struct alignas(64) Tile {
   std::uint32_t first_row = 0;                    ///< row of the first joined node
 };
 
-/// An array that is not touched before it is written, so that its pages are made by who fills them.
-template <typename T>
-class Buffer {
- public:
-  Buffer() = default;
-  explicit Buffer(std::size_t size) : values_(std::make_unique_for_overwrite<T[]>(size)), size_(size) {}
-  Buffer(const Buffer& other) : Buffer(other.size_) {
-    std::copy_n(other.values_.get(), size_, values_.get());
-  }
-  Buffer(Buffer&&) noexcept = default;
-  Buffer& operator=(Buffer other) noexcept {
-    values_ = std::move(other.values_);
-    size_ = other.size_;
-    return *this;
-  }
-  T& operator[](std::size_t i) { return values_[i]; }
-  const T& operator[](std::size_t i) const { return values_[i]; }
-  std::size_t size() const { return size_; }
-  T* begin() { return values_.get(); }
-  T* end() { return values_.get() + size_; }
-
- private:
-  std::unique_ptr<T[]> values_;
-  std::size_t size_ = 0;
-};
-
 constexpr std::uint32_t tileOf(std::uint32_t node) { return node / lattice::kSlots; }
 constexpr std::uint32_t slotOf(std::uint32_t node) { return node % lattice::kSlots; }
 constexpr std::uint64_t bitOf(std::uint32_t node) { return std::uint64_t{1} << slotOf(node); }
 
 struct State {
   /// One more than there are tiles: the last has no nodes and stands for what is beyond.
-  std::vector<Tile> tiles;
+  Buffer<Tile> tiles;
   Buffer<std::uint32_t> residual;  ///< of lattice arcs: 6 · 64 a tile, by direction, then by slot
   Buffer<std::int64_t> excess;     ///< 64 a tile: terminal + inflow − outflow
   // Listed edges in compressed rows: one row a joined node, two arcs an edge, each the other's mate.
