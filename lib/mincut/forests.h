@@ -131,7 +131,7 @@ class Forests : LoadFlow<Reversed> {
   template <Forest F>
   void join(std::uint32_t tile, std::uint64_t nodes, int direction, std::int32_t depth);
   template <Forest F>
-  void addFree(std::uint32_t tile, std::uint64_t nodes, int direction, std::int32_t depth);
+  bool takeFree(std::uint32_t tile, std::uint64_t nodes, int direction, std::int32_t depth);
   template <Forest F>
   std::uint64_t contacts(std::uint32_t tile, std::uint64_t nodes, int direction);
   template <Forest F>

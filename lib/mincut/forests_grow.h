@@ -126,15 +126,17 @@ void Forests<R>::scanTile(std::uint32_t tile, std::int32_t depth) {
   statistics_.scans += static_cast<std::uint64_t>(std::popcount(waiting));
   while (waiting != 0) {
     const std::uint64_t nodes = waiting;
+    std::uint32_t bridges = 0;  // bit d: there are some in direction d
 #pragma GCC unroll 6
-    for (int d = 0; d < lattice::kDirections; ++d) addFree<F>(tile, nodes, d, depth + 1);
+    for (int d = 0; d < lattice::kDirections; ++d)
+      bridges |= static_cast<std::uint32_t>(takeFree<F>(tile, nodes, d, depth + 1)) << d;
     bool changed = false;
     for (std::uint64_t joined = waiting & s_.tiles[tile].joined; joined != 0; joined &= joined - 1) {
       const auto slot = static_cast<std::uint32_t>(std::countr_zero(joined));
       if ((waiting >> slot & 1) != 0) changed |= scanListed<F>(tile * lattice::kSlots + slot, depth);
     }
-#pragma GCC unroll 6
-    for (int d = 0; d < lattice::kDirections; ++d) changed |= fillBridges<F>(tile, d, depth);
+    for (; bridges != 0; bridges &= bridges - 1)
+      changed |= fillBridges<F>(tile, std::countr_zero(bridges), depth);
     if (!changed) waiting = 0;
   }
 }
@@ -153,23 +155,27 @@ void Forests<R>::join(std::uint32_t tile, std::uint64_t nodes, int direction, st
   }
 }
 
+/// Free nodes that these nodes of the tile can reach in this direction join the forest; true if nodes of the
+/// other forest are reached. (That an arc has residual says that the node at its other end exists.)
 template <bool R>
 template <Forest F>
-void Forests<R>::addFree(std::uint32_t t, std::uint64_t nodes, int direction, std::int32_t depth) {
+bool Forests<R>::takeFree(std::uint32_t t, std::uint64_t nodes, int direction, std::int32_t depth) {
   constexpr bool kSource = Flow::template kIsSource<F>;
   const int reverse = lattice::opposite(direction);
   const Tile& tile = s_.tiles[t];
   if (kSource) nodes &= tile.open[direction];
-  const auto freeIn = [&](const Tile& other, std::uint64_t reached) {
+  bool meets_other = false;
+  const auto take = [&](std::uint32_t there, std::uint64_t reached) {
+    const Tile& other = s_.tiles[there];
     if (!kSource) reached &= other.open[reverse];
-    return reached & other.nodes & ~(other.source | other.sink);
+    meets_other |= (reached & (kSource ? other.sink : other.source)) != 0;
+    const std::uint64_t free = reached & ~(other.source | other.sink);
+    if (free != 0) join<F>(there, free, reverse, depth);
   };
-  const std::uint64_t inside = freeIn(tile, lattice::stepInside(nodes, direction));
-  if (inside != 0) join<F>(t, inside, reverse, depth);
-  if ((nodes & lattice::kFace[direction]) == 0) return;
-  const std::uint32_t next = tile.next[direction];
-  const std::uint64_t across = freeIn(s_.tiles[next], lattice::stepAcross(nodes, direction));
-  if (across != 0) join<F>(next, across, reverse, depth);
+  take(t, lattice::stepInside(nodes, direction));
+  if ((nodes & lattice::kFace[direction]) != 0)
+    take(tile.next[direction], lattice::stepAcross(nodes, direction));
+  return meets_other;
 }
 
 /// Those of the nodes that have a bridge in this direction.

@@ -32,6 +32,7 @@ void makeTiles(const NetworkSource& source, State& state) {
   state.tiles = mincut::Buffer<Tile>(count + 1);
   std::ranges::fill(state.tiles, Tile{});
   state.has_lattice = source.has_lattice;
+  state.tiles[count].source = ~std::uint64_t{0};
   std::ranges::fill(state.tiles[count].next, static_cast<std::uint32_t>(count));
   for (std::size_t t = 0; t < count; ++t) {
     state.tiles[t].nodes = source.tiles[t].nodes;
@@ -150,6 +151,7 @@ NetworkSource graphSource(std::vector<std::int64_t> terminals, std::vector<Netwo
 Network::Network() : state_(std::make_unique<State>()) {
   state_->tiles = mincut::Buffer<Tile>(1);
   state_->tiles[0] = Tile{};
+  state_->tiles[0].source = ~std::uint64_t{0};
   state_->excess = mincut::Buffer<std::int64_t>(lattice::kSlots);
   std::ranges::fill(state_->excess, 0);
 }

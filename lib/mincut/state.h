@@ -29,7 +29,8 @@ constexpr std::uint32_t slotOf(std::uint32_t node) { return node % lattice::kSlo
 constexpr std::uint64_t bitOf(std::uint32_t node) { return std::uint64_t{1} << slotOf(node); }
 
 struct State {
-  /// One more than there are tiles: the last has no nodes and stands for what is beyond.
+  /// One more than there are tiles: the last has no nodes and stands for what is beyond. No arc of it is
+  /// open, and all of it is marked as source, so that it is neither free nor a sink.
   Buffer<Tile> tiles;
   Buffer<std::uint32_t> residual;  ///< of lattice arcs: 6 · 64 a tile, by direction, then by slot
   Buffer<std::int64_t> excess;     ///< 64 a tile: terminal + inflow − outflow
