@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
+#include <boost/graph/push_relabel_max_flow.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
 #include <limits>
 
@@ -124,15 +125,20 @@ BoostMaxFlow::BoostMaxFlow(const Instance& instance) : graph_(std::make_unique<G
 
 BoostMaxFlow::~BoostMaxFlow() = default;
 
-std::int64_t BoostMaxFlow::solve() {
+std::int64_t BoostMaxFlow::solve(Algorithm algorithm) {
   Graph& g = *graph_;
   const auto arc_index = get(boost::edge_index, g.rows);
   const auto node_index = get(boost::vertex_index, g.rows);
   const auto nodes = static_cast<std::uint32_t>(g.color.size());
+  const auto capacity = boost::make_iterator_property_map(g.capacity.begin(), arc_index);
+  const auto residual = boost::make_iterator_property_map(g.residual.begin(), arc_index);
+  const auto opposite = boost::make_iterator_property_map(g.opposite.begin(), arc_index);
+  if (algorithm == Algorithm::PushRelabel) {
+    return boost::push_relabel_max_flow(g.rows, nodes - 2, nodes - 1, capacity, residual, opposite,
+                                        node_index);
+  }
   return boost::boykov_kolmogorov_max_flow(
-      g.rows, boost::make_iterator_property_map(g.capacity.begin(), arc_index),
-      boost::make_iterator_property_map(g.residual.begin(), arc_index),
-      boost::make_iterator_property_map(g.opposite.begin(), arc_index),
+      g.rows, capacity, residual, opposite,
       boost::make_iterator_property_map(g.predecessor.begin(), node_index),
       boost::make_iterator_property_map(g.color.begin(), node_index),
       boost::make_iterator_property_map(g.distance.begin(), node_index), node_index, nodes - 2, nodes - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two solvers that have nothing in common with ours.
+// Solvers that have nothing in common with ours.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +21,17 @@ struct AllCuts {
 /// Tries all 2ⁿ cuts of the terminals and edges as the caller gave them. REQUIRES: at most 24 nodes.
 AllCuts tryAllCuts(const Instance& instance);
 
-/// Boost's Boykov–Kolmogorov, in a graph with two terminal nodes and compressed rows of edges. Splits the
-/// build from the solve, so that each can be timed.
+/// Boost's solvers, on a graph with two terminal nodes and compressed rows of edges. Splits the build from
+/// the solve, so that each can be timed.
 class BoostMaxFlow {
  public:
+  enum class Algorithm { BoykovKolmogorov, PushRelabel };
+
   explicit BoostMaxFlow(const Instance& instance);
   ~BoostMaxFlow();
   BoostMaxFlow(const BoostMaxFlow&) = delete;
   BoostMaxFlow& operator=(const BoostMaxFlow&) = delete;
-  std::int64_t solve();
+  std::int64_t solve(Algorithm algorithm = Algorithm::BoykovKolmogorov);
 
  private:
   struct Graph;

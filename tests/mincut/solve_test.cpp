@@ -21,6 +21,7 @@ using test::Family;
 using test::GridInstance;
 using test::Instance;
 
+constexpr auto kPushRelabel = test::BoostMaxFlow::Algorithm::PushRelabel;
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 
 std::string problems(const CutReport& report) {
@@ -102,14 +103,16 @@ TEST(Solve, FindsTheCutThatBruteForceFindsInLargerGraphs) {
 }
 
 TEST(Solve, AgreesWithBoostOnRandomGraphs) {
-  for (std::uint64_t seed = 0; seed < 1500; ++seed) {
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     const auto nodes = static_cast<std::uint32_t>(2 + 7 * (seed % 40));
     const test::RandomRange range = {.nodes = nodes,
                                      .edges = nodes * static_cast<std::uint32_t>(1 + seed % 5),
                                      .terminal = seed % 2 == 0 ? 30 : 1000,
                                      .capacity = seed % 3 == 0 ? 1000 : 20};
     const Instance instance = test::randomInstance(range, seed);
-    ASSERT_EQ(solveAndCheck(instance).flow, test::BoostMaxFlow(instance).solve()) << "seed " << seed;
+    const std::int64_t flow = solveAndCheck(instance).flow;
+    ASSERT_EQ(flow, test::BoostMaxFlow(instance).solve()) << "seed " << seed;
+    ASSERT_EQ(flow, test::BoostMaxFlow(instance).solve(kPushRelabel)) << "seed " << seed;
   }
 }
 
@@ -118,7 +121,9 @@ TEST(Solve, AgreesWithBoostOnGridsOfEveryFamily) {
     for (const std::uint32_t side : {16u, 40u}) {
       const GridInstance instance = test::gridInstance(family, side, side);
       const Solution cut = solveAndCheck(instance);
-      EXPECT_EQ(cut.flow, test::BoostMaxFlow(instance.graph()).solve()) << test::name(family) << " " << side;
+      const Instance graph = instance.graph();
+      EXPECT_EQ(cut.flow, test::BoostMaxFlow(graph).solve()) << test::name(family) << " " << side;
+      EXPECT_EQ(cut.flow, test::BoostMaxFlow(graph).solve(kPushRelabel)) << test::name(family) << " " << side;
     }
   }
 }

@@ -213,6 +213,47 @@ TEST(CutCells, GivesTheSameLabelsForOneAndTwoThreads) {
   EXPECT_EQ(run(1), run(2));
 }
 
+TEST(CutSource, IntegersKeepDensitiesToOnePerCentAtEveryLevel) {
+  constexpr double kUnit = 1.0 / 32768;
+  std::size_t faces = 0, cells = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const Octree octree = randomOctree(seed).octree;
+    const CellTiles tiles = tileCells(octree);
+    Random random(seed);
+    std::vector<float> support, sigma;
+    for (std::size_t c = 0; c < octree.cellCount(); ++c)
+      support.push_back(static_cast<float>(random.uniform(0.0, 3.0))),
+          sigma.push_back(static_cast<float>(random.normal()));
+    const CutOptions options{.mu = 2.0, .lambda = 0.6 / octree.frame.voxel, .border = Border::Free};
+    const NetworkSource source = cutSource(octree, tiles, support, sigma, options);
+    const auto check = [&](std::uint32_t a, std::uint32_t b, double units) {
+      const double area = std::pow(4.0, tiles.levels[a / 64]);
+      const double agreement = 0.5 * (support[tiles.cells[a]] + support[tiles.cells[b]]);
+      EXPECT_NEAR(units * kUnit / area, std::exp(-options.mu * agreement), 0.01 * std::exp(-2.0 * agreement));
+      ++faces;
+    };
+    for (std::uint32_t t = 0; t < tiles.count(); ++t) {
+      TileCapacities values;
+      source.capacities(t, values);
+      for (std::uint32_t slot = 0; slot < 64; ++slot) {
+        const std::uint32_t cell = tiles.cells[64 * t + slot];
+        if (cell == kNoCell) continue;
+        const double density =
+            static_cast<double>(values.terminal[slot]) * kUnit / std::pow(8.0, tiles.levels[t]);
+        EXPECT_NEAR(density, 0.6 * sigma[cell], std::max(0.01 * std::abs(0.6 * sigma[cell]), 2e-5));
+        ++cells;
+        if (slot % 4 < 3 && tiles.cells[64 * t + slot + 1] != kNoCell)
+          check(64 * t + slot, 64 * t + slot + 1, values.forward[0][slot]);
+      }
+    }
+    source.edges([&](std::span<const NetworkEdge> batch) {
+      for (const NetworkEdge& edge : batch) check(edge.from, edge.to, edge.capacity);
+    });
+  }
+  EXPECT_GT(faces, 1000u);
+  EXPECT_GT(cells, 1000u);
+}
+
 TEST(CutCells, NegativeWeightsAreRefused) {
   const Block b;
   EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {-1.0, 1.0}), InvalidArgument);

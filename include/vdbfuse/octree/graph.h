@@ -61,8 +61,9 @@ Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vect
                    const std::vector<float>& sigma, const CutOptions& options, const Progress& progress = {});
 
 /// The network of that cut: what cutCells() solves. Refers to its arguments. Capacities are integers, 2¹⁵
-/// units per h² of ρ, at least one: a cell of 64 voxels a side has faces of 2²⁷ units, and ρ down to e^(−8)
-/// keeps 1 % at every level. Throws InvalidArgument for a negative lambda or mu.
+/// units per h² of ρ and at least one, for all levels alike: the six faces of a cell of 64 voxels a side stay
+/// below 2³⁰, and ρ down to e^(−6), λ|σ|h down to 0.002 are kept to 1 % at the finest level, on coarser ones
+/// smaller values still. Throws InvalidArgument for a negative lambda or mu.
 NetworkSource cutSource(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
                         const std::vector<float>& sigma, const CutOptions& options);
 
