@@ -27,8 +27,8 @@ void Forests<R>::maximiseFlow() {
     if (givers != 0) addToFront<Forest::Giver>(tile, givers, 1);
     if (takers != 0) addToFront<Forest::Taker>(tile, takers, 1);
   }
-  const auto canGrow = [](const Frontier& f) { return !f.tiles[f.level & 1].empty(); };
-  while (canGrow(frontiers_[0]) && canGrow(frontiers_[1])) {
+  const auto can_grow = [](const Frontier& f) { return !f.tiles[f.level & 1].empty(); };
+  while (can_grow(frontiers_[0]) && can_grow(frontiers_[1])) {
     if (reluctance<Forest::Giver>() <= reluctance<Forest::Taker>()) {
       growLevel<Forest::Giver>();
     } else {

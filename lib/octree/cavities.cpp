@@ -55,12 +55,12 @@ CavityReport fillUnseenCavities(const Octree& octree, const std::vector<CellFace
   const std::vector<std::size_t> sensor_cells = cellsWithSensors(octree, sensors);
   const bool border_is_open = border != Border::Solid || sensor_cells.empty();
   std::vector<bool> open(labels.size(), false);
-  const auto markOpen = [&](std::size_t cell) {
+  const auto mark_open = [&](std::size_t cell) {
     open[components.find(static_cast<std::uint32_t>(cell))] = true;
   };
-  std::for_each(sensor_cells.begin(), sensor_cells.end(), markOpen);
+  std::for_each(sensor_cells.begin(), sensor_cells.end(), mark_open);
   for (std::size_t c = 0; border_is_open && c < labels.size(); ++c) {
-    if (empty(c) && touchesBorder(octree, c)) markOpen(c);
+    if (empty(c) && touchesBorder(octree, c)) mark_open(c);
   }
   CavityReport report;
   std::vector<std::size_t> closed;

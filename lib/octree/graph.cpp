@@ -24,28 +24,28 @@ CellFace faceOf(const CellTiles& tiles, std::uint32_t first, std::uint32_t secon
 }
 
 CutEnergy energyOf(const CutPrices& prices, const std::vector<CellLabel>& labels) {
-  const auto& [octree, tiles, support, sigma, options] = prices;
+  const CellTiles& tiles = prices.tiles;
+  const Border beyond = prices.options.border;
   CutEnergy energy;
-  const auto addFace = [&](std::uint32_t node, std::uint32_t neighbour, double area) {
-    const std::uint32_t a = tiles.cells[node], b = tiles.cells[neighbour];
-    if (labels[a] != labels[b])
-      energy.surface += area * std::exp(-options.mu * 0.5 * (support[a] + support[b]));
+  const auto add_face = [&](std::uint32_t node, std::uint32_t neighbour, double area) {
+    if (labels[tiles.cells[node]] != labels[tiles.cells[neighbour]])
+      energy.surface += prices.face(node, neighbour, area);
   };
   for (std::uint32_t t = 0; t < tiles.count(); ++t) {
     const double area = faceArea(tiles.levels[t]);
     forEachEqualFace(tiles, t,
-                     [&](std::uint32_t node, std::uint32_t next, int) { addFace(node, next, area); });
+                     [&](std::uint32_t node, std::uint32_t next, int) { add_face(node, next, area); });
   }
   for (const CellTransition& t : tiles.transitions)
-    addFace(t.fine, t.coarse, faceArea(tiles.levels[t.fine / lattice::kSlots]));
+    add_face(t.fine, t.coarse, faceArea(tiles.levels[t.fine / lattice::kSlots]));
   for (std::uint32_t node = 0; node < tiles.cells.size(); ++node) {
     if (tiles.cells[node] == kNoCell) continue;
     const bool inside = labels[tiles.cells[node]] == CellLabel::Inside;
     if (inside) energy.volume += prices.volume(node);
-    const bool pays = options.border == Border::Outside ? inside : options.border == Border::Solid && !inside;
+    const bool pays = beyond == Border::Outside ? inside : beyond == Border::Solid && !inside;
     if (pays) energy.surface += prices.border(node);
   }
-  const double h = octree.frame.voxel;
+  const double h = prices.octree.frame.voxel;
   energy.volume *= h * h;
   energy.surface *= h * h;
   return energy;
