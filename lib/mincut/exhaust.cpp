@@ -37,15 +37,14 @@ class Flood {
       const Tile& next = s_.tiles[tile.next[d]];
       const std::uint64_t here = from_source_ ? tile.source & tile.open[back] : tile.sink;
       const std::uint64_t there = from_source_ ? next.source & next.open[back] : next.sink;
-      const std::uint64_t met = lattice::stepInside(here, back) | lattice::stepAcross(there, back);
+      const std::uint64_t met = lattice::stepInto(here, there, back);
       result |= from_source_ ? met : met & tile.open[d];
     }
     return result;
   }
 
   bool isReachedByListedArc(std::uint32_t node) {
-    const std::uint32_t row = s_.row(node);
-    for (std::uint32_t arc = s_.row_starts[row]; arc < s_.row_starts[row + 1]; ++arc) {
+    for (const std::uint32_t arc : s_.arcs(node)) {
       const std::uint32_t head = s_.heads[arc];
       if ((members(tileOf(head)) & bitOf(head)) == 0) continue;
       if (s_.arc_residual[from_source_ ? s_.mates[arc] : arc] > 0) return true;
@@ -59,8 +58,8 @@ class Flood {
       found = reached(tile) & free(tile);
       for (std::uint64_t joined = free(tile) & ~found & s_.tiles[tile].joined; joined != 0;
            joined &= joined - 1) {
-        const auto slot = static_cast<std::uint32_t>(std::countr_zero(joined));
-        if (isReachedByListedArc(tile * lattice::kSlots + slot)) found |= std::uint64_t{1} << slot;
+        const std::uint32_t node = lowestNode(tile, joined);
+        if (isReachedByListedArc(node)) found |= bitOf(node);
       }
       members(tile) |= found;
     }
@@ -73,10 +72,9 @@ class Flood {
       if (free(next) != 0) open_.push_back(next);
     }
     for (std::uint64_t joined = tile.joined & members(t); joined != 0; joined &= joined - 1) {
-      const std::uint32_t row =
-          s_.row(t * lattice::kSlots + static_cast<std::uint32_t>(std::countr_zero(joined)));
-      for (std::uint32_t arc = s_.row_starts[row]; arc < s_.row_starts[row + 1]; ++arc) {
-        if ((free(tileOf(s_.heads[arc])) & bitOf(s_.heads[arc])) != 0) open_.push_back(tileOf(s_.heads[arc]));
+      for (const std::uint32_t arc : s_.arcs(lowestNode(t, joined))) {
+        const std::uint32_t head = s_.heads[arc];
+        if ((free(tileOf(head)) & bitOf(head)) != 0) open_.push_back(tileOf(head));
       }
     }
   }

@@ -7,7 +7,7 @@
 // a level at a time, a whole tile in a few shifts of machine words. Where they meet, a *bridge* leads from
 // the giver to the taker, and as much is pushed along it as the path from the root of its tail can supply. In
 // the taker's forest this load travels rootwards, deepest level first, so that what comes from the bridges of
-// one tile travels together. A node whose way to its parent is filled, and a root that is used up, is an
+// several tiles travels together. A node whose way to its parent is filled, and a root that is used up, is an
 // *orphan*. An orphan with load takes the nearest parent at once and passes it on; its children, and all
 // other orphans, wait until no load is under way; then the forest is mended in one go: each takes the nearest
 // other parent or leaves the forest. A load that cannot get on ends in a node that leaves the taker's forest

@@ -126,7 +126,7 @@ void Forests<R>::loseParent(std::uint32_t node, Way old) {
 /// A parent not deeper than the node itself, so that it is none of its own descendants: their levels are all
 /// deeper, and where a chain of parents is broken by an orphan, load just waits there. The children of a node
 /// that sinks become orphans and are seen to when the load has passed. (Mending everything behind the load
-/// each time it stops takes a quarter to a half more adoptions.)
+/// each time it stops detaches up to a third more nodes.)
 template <bool R>
 bool Forests<R>::takeParentAtOnce(std::uint32_t node) {
   const std::int32_t depth_now = depth<Forest::Taker>(node);

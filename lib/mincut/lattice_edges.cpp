@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lattice_edges.h"
 
+#include <algorithm>
 #include <atomic>
-#include <numeric>
 #include <string>
-#include <vector>
 
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"

@@ -13,9 +13,8 @@ inline constexpr std::size_t kTilesPerTask = 256;
 /// Slots of the tile that have a neighbour in this direction, and an edge to it.
 inline std::uint64_t latticeEdges(const State& state, std::uint32_t tile, int direction) {
   const Tile& here = state.tiles[tile];
-  const int back = lattice::opposite(direction);
-  return here.nodes & (lattice::stepInside(here.nodes, back) |
-                       lattice::stepAcross(state.tiles[here.next[direction]].nodes, back));
+  const std::uint64_t beyond = state.tiles[here.next[direction]].nodes;
+  return here.nodes & lattice::stepInto(here.nodes, beyond, lattice::opposite(direction));
 }
 
 /// Asks the source for one tile. Throws InvalidArgument, naming the tile, for values that cannot be.
@@ -29,8 +28,7 @@ void forEachLatticeEdge(const State& state, std::uint32_t tile, const TileCapaci
   for (int d = 1; d < lattice::kDirections; d += 2) {
     const auto axis = static_cast<std::size_t>(d / 2);
     for (std::uint64_t slots = latticeEdges(state, tile, d); slots != 0; slots &= slots - 1) {
-      const auto slot = static_cast<std::uint32_t>(std::countr_zero(slots));
-      const std::uint32_t node = tile * lattice::kSlots + slot;
+      const std::uint32_t node = lowestNode(tile, slots), slot = slotOf(node);
       visit(node, state.neighbour(node, d), d, values.forward[axis][slot], values.backward[axis][slot]);
     }
   }

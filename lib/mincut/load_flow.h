@@ -46,16 +46,9 @@ class LoadFlow {
   bool isHere(std::uint32_t node) const { return tileOf(node) - first_ < count_; }
 
   Around around(std::uint32_t node) const {
-    const std::uint32_t slot = slotOf(node);
-    const Tile& tile = s_.tiles[tileOf(node)];
-    const std::uint32_t leaving = lattice::leavingDirections(slot);
     Around result;
 #pragma GCC unroll 6
-    for (int d = 0; d < lattice::kDirections; ++d) {
-      const std::uint32_t beyond = tile.next[d];  // loaded in any case: a branch would be guessed wrong
-      const std::uint32_t home = (leaving >> d & 1) != 0 ? beyond : tileOf(node);
-      result[d] = home * lattice::kSlots + lattice::neighbourSlot(slot, d);
-    }
+    for (int d = 0; d < lattice::kDirections; ++d) result[d] = s_.neighbour(node, d);
     return result;
   }
 
@@ -123,8 +116,7 @@ class LoadFlow {
   /// Calls visit(arc, neighbour) for the listed arcs of a joined node that stay here, until it says stop.
   template <typename Visit>
   bool anyListedArc(std::uint32_t node, const Visit& visit) const {
-    const std::uint32_t row = s_.row(node);
-    for (std::uint32_t arc = s_.row_starts[row]; arc < s_.row_starts[row + 1]; ++arc) {
+    for (const std::uint32_t arc : s_.arcs(node)) {
       if (isHere(s_.heads[arc]) && visit(arc, s_.heads[arc])) return true;
     }
     return false;

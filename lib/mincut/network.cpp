@@ -2,14 +2,12 @@
 #include "vdbfuse/mincut/network.h"
 
 #include <algorithm>
-#include <atomic>
 #include <string>
 
 #include "lattice_edges.h"
 #include "listed_edges.h"
 #include "state.h"
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {
 
@@ -29,11 +27,8 @@ constexpr std::uint64_t kMaxEdges = std::uint64_t{1} << 30;
 void makeTiles(const NetworkSource& source, State& state) {
   const std::size_t count = source.tiles.size();
   if (count >= kMaxTiles) throw InvalidArgument("tiles", "2^25 tiles or more");
-  state.tiles = mincut::Buffer<Tile>(count + 1);
-  std::ranges::fill(state.tiles, Tile{});
+  state.tiles = mincut::emptyTiles(static_cast<std::uint32_t>(count));
   state.has_lattice = source.has_lattice;
-  state.tiles[count].source = ~std::uint64_t{0};
-  std::ranges::fill(state.tiles[count].next, static_cast<std::uint32_t>(count));
   for (std::size_t t = 0; t < count; ++t) {
     state.tiles[t].nodes = source.tiles[t].nodes;
     for (int d = 0; d < lattice::kDirections; ++d) {
@@ -127,6 +122,14 @@ class RowBuilder {
 
 }  // namespace
 
+mincut::Buffer<Tile> mincut::emptyTiles(std::uint32_t count) {
+  Buffer<Tile> tiles(std::size_t{count} + 1);
+  std::ranges::fill(tiles, Tile{});
+  tiles[count].source = ~std::uint64_t{0};
+  std::ranges::fill(tiles[count].next, count);
+  return tiles;
+}
+
 NetworkSource graphSource(std::vector<std::int64_t> terminals, EdgeBatches edges) {
   NetworkSource source;
   source.has_lattice = false;
@@ -149,9 +152,7 @@ NetworkSource graphSource(std::vector<std::int64_t> terminals, std::vector<Netwo
 }
 
 Network::Network() : state_(std::make_unique<State>()) {
-  state_->tiles = mincut::Buffer<Tile>(1);
-  state_->tiles[0] = Tile{};
-  state_->tiles[0].source = ~std::uint64_t{0};
+  state_->tiles = mincut::emptyTiles(0);
   state_->excess = mincut::Buffer<std::int64_t>(lattice::kSlots);
   std::ranges::fill(state_->excess, 0);
 }

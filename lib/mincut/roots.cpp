@@ -42,22 +42,18 @@ class Settler {
       const std::uint64_t open = tile.source & tile.open[d];
       std::uint64_t pairs = open & lattice::stepInside(tile.sink, reverse);
       const int step = lattice::isForward(d) ? lattice::stride(d) : -lattice::stride(d);
-      for (; pairs != 0; pairs &= pairs - 1) settleLattice(nodeAt(t, pairs), d, step);
+      for (; pairs != 0; pairs &= pairs - 1) settleLattice(lowestNode(t, pairs), d, step);
       if ((open & lattice::kFace[d]) == 0 || tile.next[d] - first_ >= count_) continue;
       pairs = open & lattice::stepAcross(s_.tiles[tile.next[d]].sink, reverse);
       const auto tiles_apart = static_cast<std::int64_t>(tile.next[d]) - t;
       for (; pairs != 0; pairs &= pairs - 1)
-        settleLattice(nodeAt(t, pairs), d, tiles_apart * lattice::kSlots - 3 * step);
+        settleLattice(lowestNode(t, pairs), d, tiles_apart * lattice::kSlots - 3 * step);
     }
     for (std::uint64_t joined = tile.source & tile.joined; joined != 0; joined &= joined - 1)
-      settleListed(nodeAt(t, joined));
+      settleListed(lowestNode(t, joined));
   }
 
  private:
-  static std::uint32_t nodeAt(std::uint32_t tile, std::uint64_t slots) {
-    return tile * lattice::kSlots + static_cast<std::uint32_t>(std::countr_zero(slots));
-  }
-
   void settleLattice(std::uint32_t node, int d, std::int64_t distance) {
     const auto other = static_cast<std::uint32_t>(node + distance);
     std::uint32_t& residual = s_.residual[State::latticeArc(node, d)];
@@ -68,8 +64,7 @@ class Settler {
   }
 
   void settleListed(std::uint32_t node) {
-    const std::uint32_t row = s_.row(node);
-    for (std::uint32_t arc = s_.row_starts[row]; arc < s_.row_starts[row + 1]; ++arc) {
+    for (const std::uint32_t arc : s_.arcs(node)) {
       const std::uint32_t other = s_.heads[arc];
       if (tileOf(other) - first_ >= count_ || s_.excess[node] <= 0 || s_.excess[other] >= 0) continue;
       s_.arc_residual[s_.mates[arc]] += pay(node, other, s_.arc_residual[arc]);

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
 #include <vector>
 
 #include "buffer.h"
@@ -28,10 +29,17 @@ constexpr std::uint32_t tileOf(std::uint32_t node) { return node / lattice::kSlo
 constexpr std::uint32_t slotOf(std::uint32_t node) { return node % lattice::kSlots; }
 constexpr std::uint64_t bitOf(std::uint32_t node) { return std::uint64_t{1} << slotOf(node); }
 
+/// The node in the lowest slot of a set. REQUIRES: slots != 0.
+constexpr std::uint32_t lowestNode(std::uint32_t tile, std::uint64_t slots) {
+  return tile * lattice::kSlots + static_cast<std::uint32_t>(std::countr_zero(slots));
+}
+
+/// `count` tiles without nodes, and one more: it stands for what is beyond. No arc of it is open, and all of
+/// it is marked as source, so that it is neither free nor a sink.
+Buffer<Tile> emptyTiles(std::uint32_t count);
+
 struct State {
-  /// One more than there are tiles: the last has no nodes and stands for what is beyond. No arc of it is
-  /// open, and all of it is marked as source, so that it is neither free nor a sink.
-  Buffer<Tile> tiles;
+  Buffer<Tile> tiles;              ///< see emptyTiles()
   Buffer<std::uint32_t> residual;  ///< of lattice arcs: 6 · 64 a tile, by direction, then by slot
   Buffer<std::int64_t> excess;     ///< 64 a tile: terminal + inflow − outflow
   // Listed edges in compressed rows: one row a joined node, two arcs an edge, each the other's mate.
@@ -52,13 +60,17 @@ struct State {
     const Tile& tile = tiles[tileOf(node)];
     return tile.first_row + static_cast<std::uint32_t>(std::popcount(tile.joined & (bitOf(node) - 1)));
   }
-  /// In this direction, or in a tile without nodes if there is nothing.
+  /// In this direction, or in the tile without nodes if there is nothing.
   std::uint32_t neighbour(std::uint32_t node, int direction) const {
     const std::uint32_t slot = slotOf(node);
-    const std::uint32_t tile = (lattice::leavingDirections(slot) >> direction & 1) != 0
-                                   ? tiles[tileOf(node)].next[direction]
-                                   : tileOf(node);
-    return tile * lattice::kSlots + lattice::neighbourSlot(slot, direction);
+    const std::uint32_t beyond = tiles[tileOf(node)].next[direction];  // a branch would be guessed wrong
+    const bool leaves = (lattice::leavingDirections(slot) >> direction & 1) != 0;
+    return (leaves ? beyond : tileOf(node)) * lattice::kSlots + lattice::neighbourSlot(slot, direction);
+  }
+  /// The listed arcs of a joined node.
+  auto arcs(std::uint32_t node) const {
+    const std::uint32_t r = row(node);
+    return std::views::iota(row_starts[r], row_starts[r + 1]);
   }
 };
 

@@ -28,16 +28,15 @@ struct Level {
 
 /// Slot of a cell from the lowest six bits of its Morton code in units of the cell.
 std::uint32_t slotOf(std::uint64_t code) {
-  static constexpr auto kSlots = [] {
+  static const auto kSlotByCode = [] {
     std::array<std::uint8_t, lattice::kSlots> slots{};
-    for (unsigned c = 0; c < lattice::kSlots; ++c) {
-      const unsigned x = (c & 1) | (c >> 3 & 1) << 1, y = (c >> 1 & 1) | (c >> 4 & 1) << 1,
-                     z = (c >> 2 & 1) | (c >> 5 & 1) << 1;
-      slots[c] = static_cast<std::uint8_t>(x + 4 * y + 16 * z);
+    for (std::uint64_t c = 0; c < lattice::kSlots; ++c) {
+      const Index3 position = mortonPosition(c);
+      slots[c] = static_cast<std::uint8_t>(position.x() + 4 * position.y() + 16 * position.z());
     }
     return slots;
   }();
-  return kSlots[code % lattice::kSlots];
+  return kSlotByCode[code % lattice::kSlots];
 }
 
 class Tiler {

@@ -18,10 +18,6 @@ std::int32_t capacityOf(double price) {
   return std::max(1, static_cast<std::int32_t>(std::lround(price * kScale)));
 }
 
-double sideOf(const CellTiles& tiles, std::uint32_t node) {
-  return 1 << tiles.levels[node / lattice::kSlots];
-}
-
 }  // namespace
 
 double CutPrices::face(std::uint32_t node, std::uint32_t neighbour, double area) const {
@@ -30,7 +26,7 @@ double CutPrices::face(std::uint32_t node, std::uint32_t neighbour, double area)
 }
 
 double CutPrices::volume(std::uint32_t node) const {
-  const double side = sideOf(tiles, node);
+  const double side = 1 << tiles.levels[node / lattice::kSlots];
   const double evidence =
       std::clamp<double>(sigma[tiles.cells[node]], -options.max_evidence, options.max_evidence);
   return options.lambda * octree.frame.voxel * evidence * side * side * side;

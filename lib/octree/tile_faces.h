@@ -15,11 +15,9 @@ template <typename Visit>
 void forEachEqualFace(const CellTiles& tiles, std::uint32_t t, const Visit& visit) {
   const NetworkTile& tile = tiles.tiles[t];
   for (int d = 1; d < lattice::kDirections; d += 2) {
-    const int back = lattice::opposite(d);
     const std::uint32_t next = tile.neighbours[static_cast<std::size_t>(d)];
     const std::uint64_t beyond = next == kNoTile ? 0 : tiles.tiles[next].nodes;
-    std::uint64_t slots =
-        tile.nodes & (lattice::stepInside(tile.nodes, back) | lattice::stepAcross(beyond, back));
+    std::uint64_t slots = tile.nodes & lattice::stepInto(tile.nodes, beyond, lattice::opposite(d));
     for (; slots != 0; slots &= slots - 1) {
       const auto slot = static_cast<std::uint32_t>(std::countr_zero(slots));
       const bool leaves = (lattice::leavingDirections(slot) >> d & 1) != 0;

@@ -181,21 +181,31 @@ NetworkSource GridInstance::source() const {
   return source;
 }
 
-Instance GridInstance::graph() const {
+Instance listAllEdges(const NetworkSource& source) {
   Instance graph;
-  graph.terminals = terminals;
-  graph.edges.reserve(3 * terminals.size());
-  for (std::uint32_t node = 0; node < terminals.size(); ++node) {
-    const std::uint32_t slot = node % lattice::kSlots;
-    for (int d = 1; d < lattice::kDirections; d += 2) {
-      const bool leaves = (lattice::leavingDirections(slot) >> d & 1) != 0;
-      const std::uint32_t tile =
-          leaves ? tiles[node / lattice::kSlots].neighbours[d] : node / lattice::kSlots;
-      if (tile == kNoTile) continue;
-      const std::int32_t capacity = capacities[static_cast<std::size_t>(d / 2)][node];
-      graph.edges.push_back(
-          {node, tile * lattice::kSlots + lattice::neighbourSlot(slot, d), capacity, capacity});
+  graph.terminals.resize(source.tiles.size() * lattice::kSlots);
+  for (std::uint32_t t = 0; t < source.tiles.size(); ++t) {
+    const NetworkTile& tile = source.tiles[t];
+    TileCapacities values;
+    source.capacities(t, values);
+    for (std::uint32_t slot = 0; slot < lattice::kSlots; ++slot) {
+      if ((tile.nodes >> slot & 1) == 0) continue;
+      graph.terminals[t * lattice::kSlots + slot] = values.terminal[slot];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int d = static_cast<int>(2 * axis + 1);
+        const bool leaves = (lattice::leavingDirections(slot) >> d & 1) != 0;
+        const std::uint32_t next_tile = leaves ? tile.neighbours[2 * axis + 1] : t;
+        const std::uint32_t next_slot = lattice::neighbourSlot(slot, d);
+        if (next_tile == kNoTile || (source.tiles[next_tile].nodes >> next_slot & 1) == 0) continue;
+        graph.edges.push_back({t * lattice::kSlots + slot, next_tile * lattice::kSlots + next_slot,
+                               values.forward[axis][slot], values.backward[axis][slot]});
+      }
     }
+  }
+  if (source.edges) {
+    source.edges([&](std::span<const NetworkEdge> batch) {
+      graph.edges.insert(graph.edges.end(), batch.begin(), batch.end());
+    });
   }
   return graph;
 }

@@ -21,6 +21,9 @@ struct Instance {
   NetworkSource source() const { return graphSource(terminals, edges); }
 };
 
+/// The same network with all edges listed; empty slots become nodes on their own.
+Instance listAllEdges(const NetworkSource& source);
+
 /// A grid of side³ cells in tiles of 4³, tiles in Morton order; edges along the axes, the same both ways.
 struct GridInstance {
   std::uint32_t side = 0;
@@ -30,8 +33,7 @@ struct GridInstance {
 
   /// On the lattice. Refers to this instance.
   NetworkSource source() const;
-  /// The same with all edges listed.
-  Instance graph() const;
+  Instance graph() const { return listAllEdges(source()); }
 };
 
 /// What the cells of a grid know of the surface. The surface is a bumpy ball in a cube; +: outside, source.
@@ -62,7 +64,7 @@ struct MixedInstance {
   std::vector<NetworkEdge> listed;
 
   NetworkSource source() const;
-  /// All edges listed; empty slots become nodes on their own.
+  /// What listAllEdges() makes of it, by coordinates in place of the lattice's own tables.
   Instance graph() const;
 };
 MixedInstance mixedInstance(std::uint64_t seed);

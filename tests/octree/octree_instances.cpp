@@ -90,31 +90,4 @@ OctreeInstance octreeInstance(OctreeFamily family, int resolution, std::uint64_t
   return instance;
 }
 
-Instance OctreeInstance::graph() const {
-  const NetworkSource network = source();
-  Instance graph;
-  graph.terminals.resize(tiles.cells.size());
-  for (std::uint32_t t = 0; t < tiles.count(); ++t) {
-    TileCapacities values;
-    network.capacities(t, values);
-    std::copy(values.terminal.begin(), values.terminal.end(),
-              graph.terminals.begin() + static_cast<std::ptrdiff_t>(t) * lattice::kSlots);
-    for (std::uint32_t slot = 0; slot < lattice::kSlots; ++slot) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int d = static_cast<int>(2 * axis + 1);
-        const bool leaves = (lattice::leavingDirections(slot) >> d & 1) != 0;
-        const std::uint32_t tile = leaves ? tiles.tiles[t].neighbours[2 * axis + 1] : t;
-        if (tile == kNoTile || values.forward[axis][slot] == 0) continue;  // prices are at least one
-        graph.edges.push_back({t * lattice::kSlots + slot,
-                               tile * lattice::kSlots + lattice::neighbourSlot(slot, d),
-                               values.forward[axis][slot], values.backward[axis][slot]});
-      }
-    }
-  }
-  network.edges([&](std::span<const NetworkEdge> batch) {
-    graph.edges.insert(graph.edges.end(), batch.begin(), batch.end());
-  });
-  return graph;
-}
-
 }  // namespace vdbfuse::test

@@ -29,8 +29,7 @@ struct OctreeInstance {
 
   /// Refers to this instance.
   NetworkSource source() const { return cutSource(octree, tiles, support, sigma, options); }
-  /// The same with all edges listed; empty slots become nodes on their own.
-  Instance graph() const;
+  Instance graph() const { return listAllEdges(source()); }
 };
 
 /// Of `resolution` finest voxels a side.

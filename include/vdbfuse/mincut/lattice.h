@@ -35,6 +35,11 @@ constexpr std::uint64_t stepAcross(std::uint64_t slots, int direction) {
   return isForward(direction) ? slots >> 3 * stride(direction) : slots << 3 * stride(direction);
 }
 
+/// Where the cells of a tile, and those of the tile behind it, step to in the tile itself.
+constexpr std::uint64_t stepInto(std::uint64_t here, std::uint64_t behind, int direction) {
+  return stepInside(here, direction) | stepAcross(behind, direction);
+}
+
 namespace detail {
 struct Tables {
   std::array<std::array<std::uint8_t, kSlots>, kDirections> neighbour{};

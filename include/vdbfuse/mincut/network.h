@@ -37,10 +37,11 @@ struct NetworkTile {
 struct TileCapacities {
   /// Price of the node on the sink side when positive; minus the price on the source side when negative.
   std::array<std::int64_t, lattice::kSlots> terminal{};
-  /// Edges towards +x, +y, +z: price of a cut with this node on the source side and the next on the sink side
-  /// …
+  /// Of the edges towards +x, +y, +z: price of a cut with this node on the source side, the next on the sink
+  /// side.
   std::array<std::array<std::int32_t, lattice::kSlots>, 3> forward{};
-  std::array<std::array<std::int32_t, lattice::kSlots>, 3> backward{};  ///< … and of the opposite cut
+  /// Price of the opposite cut.
+  std::array<std::array<std::int32_t, lattice::kSlots>, 3> backward{};
 };
 
 /// A listed edge. Parallel edges add up.
@@ -64,8 +65,7 @@ struct NetworkSource {
   EdgeBatches edges;        ///< may be empty; called several times: same edges, same order
 };
 
-/// A general graph: nodes 0 … terminals.size()−1, all edges listed. Keeps a reference to nothing but copies
-/// of the arguments.
+/// A general graph: nodes 0 … terminals.size()−1, all edges listed. Keeps its arguments.
 NetworkSource graphSource(std::vector<std::int64_t> terminals, EdgeBatches edges);
 NetworkSource graphSource(std::vector<std::int64_t> terminals, std::vector<NetworkEdge> edges);
 

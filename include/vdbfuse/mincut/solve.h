@@ -26,9 +26,10 @@ struct SolveOptions {
   CutTies ties = CutTies::SmallestSource;
 };
 
-/// How much work a solve was. Counts, no times: the same network gives the same numbers.
+/// How much work a solve was. Counts, no times: the same network and flow give the same numbers, on one
+/// thread and on several (which differ from one, because regions are solved first).
 struct SolveStatistics {
-  std::uint64_t regions = 0;    ///< parts that were solved on their own before the whole
+  std::uint64_t regions = 0;    ///< parts that were solved on their own before the whole; 0 on one thread
   std::uint64_t passes = 0;     ///< levels by which one of the forests grew
   std::uint64_t tiles = 0;      ///< tiles looked at in growth
   std::uint64_t scans = 0;      ///< nodes of theirs that were to be looked at
@@ -41,8 +42,8 @@ struct SolveStatistics {
 
 /// A minimum cut. The flow that proves it stays in the network (see verify.h).
 struct MinCut {
-  std::vector<std::uint64_t>
-      source;  ///< a tile each: its nodes on the source side; bits of empty slots are 0
+  /// A tile each: its nodes on the source side. Bits of empty slots are 0.
+  std::vector<std::uint64_t> source;
   /// Value of the maximum flow == capacity of the cut.
   std::int64_t flow = 0;
   SolveStatistics statistics;
@@ -63,9 +64,9 @@ struct MinCut {
 /// "Faster and more dynamic maximum flow by incremental breadth-first search", ESA 2015. Three things differ:
 /// no more is pushed from one side than it can supply, so that the loop ends for all capacities; forests are
 /// mended in batches; and fronts are sets of bits, so that a tile of 64 nodes is scanned in a few shifts.
-/// Large networks are first solved in regions, each on a thread (the first phase of Shekhovtsov and Hlaváč,
-/// "A distributed mincut/maxflow algorithm combining path augmentation and push-relabel", IJCV 2013), then as
-/// a whole.
+/// On several threads large networks are first solved in regions, each on a thread (the first phase of
+/// Shekhovtsov and Hlaváč, "A distributed mincut/maxflow algorithm combining path augmentation and
+/// push-relabel", IJCV 2013), then as a whole.
 MinCut solve(Network& network, const SolveOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vdbfuse
