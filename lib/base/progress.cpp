@@ -53,6 +53,7 @@ void StepTimer::close() {
   if (!running_) return;
   steps_.back().seconds = wallSeconds() - wall_start_;
   steps_.back().cpu_seconds = cpuSeconds() - cpu_start_;
+  steps_.back().peak_memory_bytes = peakMemoryBytes();
   running_ = false;
 }
 

@@ -50,16 +50,17 @@ void addView(const PreparedView& prepared, const PointBlock& block, double voxel
 
 ScalarGrid countAgreement(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
                           const Progress& progress) {
-  const std::vector<PreparedView> views = prepare(judged);
   const TouchOptions touch{kMaxOutlierOfSeeds, kLeastAlternativeOfSeeds,
                            [&](double noise) { return kKernelReach * std::max(frame.voxel, noise); }};
-  ScalarGrid support("support", frame, 0.0f, touchedLeaves(views, frame, domain, touch, progress));
-  ProgressStep step(progress, "count agreement", support.leafCount());
-  support.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
-    const std::vector<Eigen::Vector3d> voxels = voxelsOf(leaf, frame);
-    const PointBlock block(voxels);
-    for (const PreparedView& view : views) addView(view, block, frame.voxel, leaf.values);
-    step.advance();
+  ScalarGrid support("support", frame, 0.0f, touchedLeaves(judged, frame, domain, touch, progress));
+  ProgressStep step(progress, "count agreement", support.leafCount() * judged.views.size());
+  forEachPrepared(judged, [&](const std::vector<PreparedView>& views) {
+    support.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
+      const std::vector<Eigen::Vector3d> voxels = voxelsOf(leaf, frame);
+      const PointBlock block(voxels);
+      for (const PreparedView& view : views) addView(view, block, frame.voxel, leaf.values);
+      step.advance(views.size());
+    });
   });
   support.metadata()["about"] = "C(x): number of reliable views that agree on a surface here";
   return support;

@@ -42,7 +42,7 @@ void AlternativeViews::restore(std::vector<View>& views) const {
 
 void weighAlternatives(const AlternativeViews& alternatives, std::size_t index,
                        const Testimonies& testimonies, const Image<std::uint8_t>& confidence,
-                       const ReliabilityTable& table, const std::vector<PixelSurface>& surfaces,
+                       const ReliabilityTable& table, const std::vector<CompactSurface>& surfaces,
                        JudgedView& view) {
   const std::vector<std::size_t>& layers = alternatives.of()[index];
   if (layers.empty()) return;

@@ -6,7 +6,6 @@
 
 #include "fusion/learn_reliability.h"
 #include "fusion/pixel_testimony.h"
-#include "vdbfuse/fusion/pixel_surface.h"
 #include "vdbfuse/sensor/judged_view.h"
 
 namespace vdbfuse {
@@ -36,7 +35,7 @@ class AlternativeViews {
 /// `depth`.
 void weighAlternatives(const AlternativeViews& alternatives, std::size_t index,
                        const Testimonies& testimonies, const Image<std::uint8_t>& confidence,
-                       const ReliabilityTable& table, const std::vector<PixelSurface>& surfaces,
+                       const ReliabilityTable& table, const std::vector<CompactSurface>& surfaces,
                        JudgedView& view);
 
 }  // namespace vdbfuse

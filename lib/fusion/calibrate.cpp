@@ -8,9 +8,9 @@
 
 #include "fusion/half_normal.h"
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/base/parallel.h"
 #include "vdbfuse/fusion/pixel_surface.h"
 #include "vdbfuse/geometry/projector.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -76,19 +76,19 @@ std::vector<std::size_t> pairedViews(const ViewGraph& graph, std::size_t view) {
 
 class ResidualCollector {
  public:
-  ResidualCollector(const std::vector<View>& views, const ViewGraph& graph, const NoiseLaw& guess)
-      : views_(views), graph_(graph), guess_(guess) {}
+  ResidualCollector(const std::vector<View>& views, const NoiseLaw& guess) : views_(views), guess_(guess) {}
 
-  std::vector<Residual> collect(std::size_t index) const {
+  std::vector<Residual> collect(std::size_t index, const std::vector<std::size_t>& pairs) const {
     const View& view = views_[index];
-    const PixelSurface surface = analyseSurface(view, guess_);
+    std::vector<Sample> samples;
+    visitSample(view.map.depth, [&](int x, int y) {
+      const Eigen::Vector3f normal = surfaceNormal(view, guess_, x, y);
+      if (!normal.isZero()) samples.push_back({x, y, normal.cast<double>()});
+    });
     std::vector<Residual> result;
-    for (const std::size_t other : pairedViews(graph_, index)) {
+    for (const std::size_t other : pairs) {
       const Projector projector(views_[other].projection, views_[other].world_from_camera);
-      visitSample(view.map.depth, [&](int x, int y) {
-        const Eigen::Vector3f normal = surface.normal(x, y);
-        if (!normal.isZero()) compare(view, x, y, normal.cast<double>(), views_[other], projector, result);
-      });
+      for (const Sample& s : samples) compare(view, s.x, s.y, s.normal, views_[other], projector, result);
     }
     return result;
   }
@@ -117,8 +117,12 @@ class ResidualCollector {
                    static_cast<std::size_t>(bin - kAngleBinsDeg.begin())});
   }
 
+  struct Sample {
+    int x, y;
+    Eigen::Vector3d normal;
+  };
+
   const std::vector<View>& views_;
-  const ViewGraph& graph_;
   const NoiseLaw& guess_;
 };
 
@@ -126,9 +130,15 @@ std::vector<Residual> collectResiduals(const std::vector<View>& views, const Vie
                                        const NoiseLaw& guess, const Progress& progress) {
   std::vector<std::vector<Residual>> parts(views.size());
   ProgressStep step(progress, "calibrate noise", views.size());
-  const ResidualCollector collector(views, graph, guess);
-  parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t) {
-    parts[begin] = collector.collect(begin);
+  const ResidualCollector collector(views, guess);
+  Neighbourhoods pairs{pathThrough(graph, views.size()),
+                       {},
+                       windowBytes(views.front().memory()),
+                       [&](std::size_t i) { return imageBytes(views[i]); },
+                       [&](std::size_t i) { letGo(views[i]); }};
+  for (std::size_t i = 0; i < views.size(); ++i) pairs.needed.push_back(pairedViews(graph, i));
+  forEachNeighbourhood(pairs, [&](std::size_t i) {
+    parts[i] = collector.collect(i, pairs.needed[i]);
     step.advance();
   });
   std::vector<Residual> all;
@@ -186,12 +196,12 @@ NoiseLaw powerLaw(double scale, int exponent, double typical) {
 
 DepthStatistics depthStatistics(const std::vector<View>& views, const std::optional<Box>& domain) {
   std::vector<double> depths, inside;
-  for (const View& view : views) {
+  forEachView(views, [&](const View& view) {
     visitSample(view.map.depth, [&](int x, int y) {
       depths.push_back(view.map.depth(x, y));
       if (domain && domain->contains(worldPoint(view, x, y))) inside.push_back(depths.back());
     });
-  }
+  });
   if (depths.empty()) throw InvalidArgument("views", "no view has a valid depth");
   const double median = quantile(inside.empty() ? depths : inside, 0.5);
   return {0.97 * quantile(depths, 0.002), median, 1.03 * quantile(depths, 0.998)};
@@ -199,7 +209,7 @@ DepthStatistics depthStatistics(const std::vector<View>& views, const std::optio
 
 NoiseLaw guessNoise(const std::vector<View>& views, double typical_depth) {
   std::vector<double> ratios;
-  for (const View& view : views) {
+  forEachView(views, [&](const View& view) {
     const Image<float>& depth = view.map.depth;
     visitSample(depth, [&](int x, int y) {
       if (x == 0 || x + 1 == depth.width()) return;
@@ -207,7 +217,7 @@ NoiseLaw guessNoise(const std::vector<View>& views, double typical_depth) {
       if (left == kInvalidDepth || right == kInvalidDepth) return;
       ratios.push_back(std::abs(left - 2 * here + right) / footprint(view.projection, here));
     });
-  }
+  });
   // Standard deviation from the median of |second difference|; never below a tenth of a pixel's footprint.
   const double ratio = ratios.empty() ? 0.5 : quantile(ratios, 0.5) / (0.6745 * std::sqrt(6.0));
   return powerLaw(std::max(ratio, 0.1) * footprint(views.front().projection, typical_depth), 1,

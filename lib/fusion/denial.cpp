@@ -48,7 +48,7 @@ class TestimonyGrid {
       : low_(domain.min()),
         step_(domain.sizes().maxCoeff() / kDenialSide),
         bricks_a_side_((domain.sizes() / (step_ * kBrick)).array().ceil().cast<int>().max(1)),
-        views_(prepare(judged)),
+        judged_(judged),
         ratio_(judged.sensor),
         integral_(0.5, 0.0, kViewsOfEightNodes) {
     const int count = bricks_a_side_.prod();
@@ -63,29 +63,34 @@ class TestimonyGrid {
     sums_.assign(count * kNodes, 0.0f);
     reports_.assign(count, 0.0f);
     without_.assign(count, 0.0f);
-    ProgressStep progress_step(progress, "weigh views", bricks_.size());
+    ProgressStep progress_step(progress, "weigh views", bricks_.size() * judged_.views.size());
+    forEachPrepared(judged_, [&](const std::vector<PreparedView>& views) {
+      forEachBrick([&](Brick& brick, std::size_t first) {
+        for (const PreparedView& view : views)
+          add(view, brick.block, static_cast<float>(view.view->weight), &sums_[first * kNodes],
+              &reports_[first]);
+        progress_step.advance(views.size());
+      });
+    });
     forEachBrick([&](Brick& brick, std::size_t first) {
-      for (const PreparedView& view : views_)
-        add(view, brick.block, static_cast<float>(view.view->weight), &sums_[first * kNodes],
-            &reports_[first]);
       logMeans(integral_, &sums_[first * kNodes], PointBlock::kCapacity, &without_[first]);
       brick.sure = smallestOf(first);
-      progress_step.advance();
     });
   }
 
   // From now on smallestOnRay() is about what all views but this one say, on rays of this one.
-  void leaveOut(std::size_t view) {
+  void leaveOut(std::size_t index) {
+    const PreparedView view(judged_.views[index], judged_.sensor);
     forEachBrick([&](Brick& brick, std::size_t first) {
       brick.smallest = kNobodyDenies;
       if (brick.sure - kMostOfOneView > kNobodyDenies) return;
       // A ray is nearest to points up to half a step outside the image.
-      if (!views_[view].projector.mightSee(brick.block.centre, brick.block.radius + step_)) return;
+      if (!view.projector.mightSee(brick.block.centre, brick.block.radius + step_)) return;
       std::array<float, PointBlock::kCapacity * kNodes> sums;
       std::array<float, PointBlock::kCapacity> reports;
       std::copy_n(&sums_[first * kNodes], sums.size(), sums.begin());
       std::copy_n(&reports_[first], reports.size(), reports.begin());
-      add(views_[view], brick.block, -kOwnWeight, sums.data(), reports.data());
+      add(view, brick.block, -kOwnWeight, sums.data(), reports.data());
       float* const evidence = &without_[first];
       logMeans(integral_, sums.data(), reports.size(), evidence);
       for (std::size_t i = 0; i < reports.size(); ++i)
@@ -199,7 +204,7 @@ class TestimonyGrid {
   Eigen::Vector3d low_;
   double step_;
   Eigen::Array3i bricks_a_side_;
-  std::vector<PreparedView> views_;
+  const JudgedViews& judged_;
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
   std::vector<Brick> bricks_;
@@ -224,7 +229,7 @@ void examineRow(const TestimonyGrid& grid, const JudgedViews& judged, std::size_
     const Eigen::Vector3d start =
         view.world_from_camera * unproject(view.projection, x, y, judged.sensor.near);
     const Eigen::Vector3d end = view.world_from_camera * unproject(view.projection, x, y, claimed);
-    testimony(x, y).denial = denialBin(grid.smallestOnRay(start, end));
+    testimony(x, y).denial = denialBin(grid.smallestOnRay(start, end)) & 7u;
   }
 }
 
@@ -242,6 +247,7 @@ void examineDenial(const JudgedViews& judged, const Box& domain, Testimonies& te
                   for (std::size_t y = begin; y < end; ++y)
                     examineRow(grid, judged, i, static_cast<int>(y), testimonies.views[i]);
                 });
+    letGo(judged.views[i]), letGo(testimonies.views[i]);
     step.advance();
   }
 }

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -39,6 +40,7 @@ std::vector<ReliablePoint> reliablePoints(const JudgedViews& judged, float max_o
         points.push_back({point, static_cast<std::uint32_t>(i), 1 - outlier});
       }
     }
+    letGo(view);
   }
   return points;
 }

@@ -21,25 +21,55 @@ double totalWeight(const JudgedViews& judged) {
   return sum;
 }
 
-// Adds up all views' testimony at blocks of points.
+// Sums of many points over all views. Windows of views pass by on the outside, so that any number of views
+// needs no more memory than one window of them.
 class Combiner {
  public:
   Combiner(const JudgedViews& judged, const EvidenceOptions& options)
-      : views_(prepare(judged)), sum_(judged.sensor, judged.miss_rate, options, totalWeight(judged)) {}
+      : judged_(judged), sum_(judged.sensor, judged.miss_rate, options, totalWeight(judged)) {}
 
-  // out[i] = evidence at points[i]; at most a block of them.
-  void combine(std::span<const Eigen::Vector3d> points, float* out) const {
-    const PointBlock block(points);
-    std::vector<float> nodes(points.size() * sum_.nodeCount()), reports(points.size()), heard(points.size()),
-        empties(points.size()), masked(points.size());
+  // How many points may be summed up at a time.
+  std::size_t capacity() const {
+    constexpr std::size_t kBytes = std::size_t{256} << 20;
+    return kBytes / (sizeof(float) * (sum_.nodeCount() + 5));
+  }
+
+  // Evidence of points that lie in tasks: points_of(task) are those at first[task] ... first[task + 1] − 1 of
+  // the result.
+  template <class PointsOf>
+  std::vector<float> combine(const std::vector<std::size_t>& first, const PointsOf& points_of) const {
+    const std::size_t tasks = first.size() - 1, count = first.back();
+    std::vector<float> nodes(count * sum_.nodeCount()), reports(count), heard(count), empties(count),
+        masked(count), values(count);
     const TestimonySums sums{nodes, reports, heard, empties, masked};
-    for (const PreparedView& view : views_)
-      sum_.add(view, block, static_cast<float>(view.view->weight), sums);
-    sum_.finish(sums, out);
+    forEachPrepared(judged_, [&](const std::vector<PreparedView>& views) {
+      parallelFor(tasks, 1, [&](std::size_t task, std::size_t) {
+        forEachBlock(points_of(task), [&](const PointBlock& block, std::size_t place) {
+          const TestimonySums part = sums.part(first[task] + place, block.size);
+          for (const PreparedView& view : views)
+            sum_.add(view, block, static_cast<float>(view.view->weight), part);
+        });
+      });
+    });
+    parallelFor(tasks, 1, [&](std::size_t task, std::size_t) {
+      for (std::size_t i = first[task]; i < first[task + 1]; i += PointBlock::kCapacity) {
+        const std::size_t size = std::min(PointBlock::kCapacity, first[task + 1] - i);
+        sum_.finish(sums.part(i, size), &values[i]);
+      }
+    });
+    return values;
   }
 
  private:
-  std::vector<PreparedView> views_;
+  template <class Visit>
+  static void forEachBlock(const std::vector<Eigen::Vector3d>& points, const Visit& visit) {
+    for (std::size_t i = 0; i < points.size(); i += PointBlock::kCapacity) {
+      const std::size_t size = std::min(PointBlock::kCapacity, points.size() - i);
+      visit(PointBlock(std::span(points).subspan(i, size)), i);
+    }
+  }
+
+  const JudgedViews& judged_;
   TestimonySum sum_;
 };
 
@@ -59,26 +89,46 @@ void appendSamples(const Octree& octree, std::size_t cell, std::vector<Eigen::Ve
   }
 }
 
-std::vector<float> combineAll(const Combiner& combiner, std::span<const Eigen::Vector3d> points) {
-  std::vector<float> values(points.size());
-  for (std::size_t first = 0; first < points.size(); first += PointBlock::kCapacity) {
-    const std::size_t count = std::min(PointBlock::kCapacity, points.size() - first);
-    combiner.combine(points.subspan(first, count), values.data() + first);
-  }
-  return values;
+std::size_t sampleCount(int level) {
+  const auto side = static_cast<std::size_t>(samplesPerSide(level));
+  return side * side * side;
 }
 
-void evaluateCells(const Combiner& combiner, const Octree& octree, std::size_t begin, std::size_t end,
+// Cells [begin, end) that are evaluated together, in tasks of kCellsPerTask.
+struct CellPass {
+  std::size_t begin = 0, end = 0;
+  std::vector<std::size_t> first{0};  // sample of each task, and the number of all
+};
+
+std::vector<CellPass> passesOf(const Octree& octree, std::size_t capacity) {
+  std::vector<CellPass> passes;
+  for (std::size_t begin = 0; begin < octree.cellCount(); begin += kCellsPerTask) {
+    const std::size_t end = std::min(begin + kCellsPerTask, octree.cellCount());
+    std::size_t samples = 0;
+    for (std::size_t cell = begin; cell < end; ++cell) samples += sampleCount(octree.levels[cell]);
+    if (passes.empty() || passes.back().first.back() + samples > capacity)
+      passes.push_back({begin, begin, {0}});
+    passes.back().end = end;
+    passes.back().first.push_back(passes.back().first.back() + samples);
+  }
+  return passes;
+}
+
+void evaluateCells(const Combiner& combiner, const Octree& octree, const CellPass& pass,
                    std::vector<float>& sigma) {
-  std::vector<Eigen::Vector3d> points;
-  for (std::size_t cell = begin; cell < end; ++cell) appendSamples(octree, cell, points);
-  const std::vector<float> values = combineAll(combiner, points);
+  const std::vector<float> values = combiner.combine(pass.first, [&](std::size_t task) {
+    const std::size_t begin = pass.begin + task * kCellsPerTask;
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t cell = begin; cell < std::min(begin + kCellsPerTask, pass.end); ++cell)
+      appendSamples(octree, cell, points);
+    return points;
+  });
   const float* next = values.data();
-  for (std::size_t cell = begin; cell < end; ++cell) {
-    const int samples = samplesPerSide(octree.levels[cell]), count = samples * samples * samples;
+  for (std::size_t cell = pass.begin; cell < pass.end; ++cell) {
+    const std::size_t count = sampleCount(octree.levels[cell]);
     double sum = 0;
-    for (int i = 0; i < count; ++i) sum += *next++;
-    sigma[cell] = static_cast<float>(sum / count);
+    for (std::size_t i = 0; i < count; ++i) sum += *next++;
+    sigma[cell] = static_cast<float>(sum / static_cast<double>(count));
   }
 }
 
@@ -117,7 +167,7 @@ double logMaskRatio(double mask_error) {
 std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points,
                               const EvidenceOptions& options) {
   requireValid(options);
-  return combineAll(Combiner(judged, options), points);
+  return Combiner(judged, options).combine({0, points.size()}, [&](std::size_t) { return points; });
 }
 
 std::vector<float> evidence(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
@@ -126,10 +176,10 @@ std::vector<float> evidence(const JudgedViews& judged, const Octree& octree, con
   const Combiner combiner(judged, options);
   std::vector<float> sigma(octree.cellCount());
   ProgressStep step(progress, "evidence", octree.cellCount());
-  parallelFor(octree.cellCount(), kCellsPerTask, [&](std::size_t begin, std::size_t end) {
-    evaluateCells(combiner, octree, begin, end, sigma);
-    step.advance(end - begin);
-  });
+  for (const CellPass& pass : passesOf(octree, combiner.capacity())) {
+    evaluateCells(combiner, octree, pass, sigma);
+    step.advance(pass.end - pass.begin);
+  }
   return sigma;
 }
 

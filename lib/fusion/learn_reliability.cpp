@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "fusion/outlier_em.h"
+#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -69,18 +71,28 @@ class AnswerRatios {
   std::vector<double> ratios_;
 };
 
+// Views beyond the confidences hold alternative depths: what is learned is of what was measured.
 std::vector<double> countOutcomes(const Testimonies& testimonies,
                                   const std::vector<Image<std::uint8_t>>& confidence) {
-  std::vector<double> counts(kOutcomes, 0.0);
-  // Views beyond the confidences hold alternative depths: what is learned is of what was measured.
-  for (std::size_t i = 0; i < confidence.size(); ++i) {
-    const Image<T>& view = testimonies.views[i];
-    for (std::size_t p = 0; p < view.size(); ++p) {
-      if (!view.data()[p].measured) continue;
-      counts[outcome(confidence[i].empty() ? 0 : confidence[i].data()[p], view.data()[p])] += 1;
+  constexpr std::size_t kViewsPerTask = 8;
+  std::vector<std::vector<std::uint64_t>> parts(chunkCount(confidence.size(), kViewsPerTask));
+  parallelFor(confidence.size(), kViewsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint64_t>& counts = parts[begin / kViewsPerTask];
+    counts.assign(kOutcomes, 0);
+    for (std::size_t i = begin; i < end; ++i) {
+      const Image<T>& view = testimonies.views[i];
+      for (std::size_t p = 0; p < view.size(); ++p) {
+        if (!view.data()[p].measured) continue;
+        ++counts[outcome(confidence[i].empty() ? 0 : confidence[i].data()[p], view.data()[p])];
+      }
+      letGo(view), letGo(confidence[i]);
     }
+  });
+  std::vector<double> sum(kOutcomes, 0.0);
+  for (const auto& part : parts) {
+    for (std::size_t k = 0; k < kOutcomes; ++k) sum[k] += static_cast<double>(part[k]);
   }
-  return counts;
+  return sum;
 }
 
 // One step of Bayes' rule with the histograms of denial that the posterior so far gives. EM over denial as
@@ -110,14 +122,19 @@ void hearDenial(const std::vector<double>& counts, std::vector<double>& table) {
 }  // namespace
 
 ConfidenceBins::ConfidenceBins(const std::vector<View>& views) {
-  constexpr std::size_t kStride = 7;  // a sample is enough for twenty quantiles
+  // A sample is enough for twenty quantiles.
+  constexpr std::size_t kSmallestStride = 7, kMostSamples = 8'000'000;
+  std::size_t pixels = 0;
+  for (const View& view : views) pixels += view.map.depth.size();
+  const std::size_t stride = std::max(kSmallestStride, pixels / kMostSamples);
   std::vector<float> sample;
   for (const View& view : views) {
     if (view.map.confidence.empty()) return;
-    for (std::size_t i = 0; i < view.map.depth.size(); i += kStride) {
+    for (std::size_t i = 0; i < view.map.depth.size(); i += stride) {
       const float c = view.map.confidence.data()[i];
       if (view.map.depth.data()[i] != kInvalidDepth && std::isfinite(c)) sample.push_back(c);
     }
+    letGo(view);
   }
   if (sample.empty()) return;
   std::sort(sample.begin(), sample.end());
@@ -130,15 +147,18 @@ std::uint8_t ConfidenceBins::binOf(float confidence) const {
   return static_cast<std::uint8_t>(std::upper_bound(ends_.begin(), ends_.end(), confidence) - ends_.begin());
 }
 
-std::vector<Image<std::uint8_t>> ConfidenceBins::binAll(const std::vector<View>& views) const {
+std::vector<Image<std::uint8_t>> ConfidenceBins::replace(std::vector<View>& views) const {
   std::vector<Image<std::uint8_t>> bins(views.size());
-  if (!informative()) return bins;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const Image<float>& confidence = views[i].map.confidence;
-    bins[i] = Image<std::uint8_t>(confidence.width(), confidence.height());
-    std::transform(confidence.begin(), confidence.end(), bins[i].begin(),
-                   [this](float c) { return binOf(c); });
-  }
+  parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
+    Image<float>& confidence = views[i].map.confidence;
+    if (informative()) {
+      bins[i] = Image<std::uint8_t>(confidence.width(), confidence.height(), 0, confidence.memory());
+      std::transform(confidence.begin(), confidence.end(), bins[i].begin(),
+                     [this](float c) { return binOf(c); });
+      letGo(bins[i]);
+    }
+    confidence = {};
+  });
   return bins;
 }
 

@@ -15,8 +15,8 @@ class ConfidenceBins {
   bool informative() const { return !ends_.empty(); }
   const std::vector<float>& ends() const { return ends_; }
   std::uint8_t binOf(float confidence) const;
-  /// One image a view; empty images without confidence.
-  std::vector<Image<std::uint8_t>> binAll(const std::vector<View>& views) const;
+  /// Takes the place of all views' confidence: one image a view; empty images without confidence.
+  std::vector<Image<std::uint8_t>> replace(std::vector<View>& views) const;
 
  private:
   std::vector<float> ends_;

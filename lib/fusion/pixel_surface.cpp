@@ -39,30 +39,38 @@ struct PlaneSums {
   }
 };
 
+// What is found out about one pixel.
+struct LocalSurface {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  float incidence = 0, continuity = 0;
+};
+
 class SurfaceAnalysis {
  public:
-  SurfaceAnalysis(const View& view, const NoiseLaw& noise)
-      : view_(view), noise_(noise), depth_(view.map.depth), inverse_(depth_.width(), depth_.height()) {
-    std::transform(depth_.begin(), depth_.end(), inverse_.begin(),
-                   [](float d) { return d > 0 ? 1.0f / d : 0.0f; });
-  }
+  // `inverse`: 1/d of all pixels, or empty where only a few are asked for.
+  SurfaceAnalysis(const View& view, const NoiseLaw& noise, const Image<float>& inverse)
+      : view_(view), noise_(noise), depth_(view.map.depth), inverse_(inverse) {}
 
-  void analyse(int x, int y, PixelSurface& out) const {
+  LocalSurface analyse(int x, int y) const {
+    LocalSurface result;
     const float d = depth_(x, y);
-    if (d == kInvalidDepth) return;
+    if (d == kInvalidDepth) return result;
     PlaneSums sums;
-    sums.add(0, 0, inverse_(x, y));
+    sums.add(0, 0, inverse(x, y));
     gather(x, y, sums);
     const int neighbours = sums.count - 1;
-    out.continuity(x, y) =
+    result.continuity =
         static_cast<float>(neighbours) / static_cast<float>(std::max(sums.valid, kMinNeighbours));
-    if (neighbours < kMinNeighbours) return;
+    if (neighbours < kMinNeighbours) return result;
     const auto plane = sums.solve();
-    if (!plane) return;
-    if (const auto normal = cameraNormal(x, y, *plane)) setNormal(x, y, *normal, out);
+    if (!plane) return result;
+    if (const auto normal = cameraNormal(x, y, *plane)) setNormal(x, y, *normal, result);
+    return result;
   }
 
  private:
+  float inverse(int x, int y) const { return inverse_.empty() ? 1.0f / depth_(x, y) : inverse_(x, y); }
+
   void gather(int x, int y, PlaneSums& sums) const {
     const float d = depth_(x, y);
     const float noise = static_cast<float>(3.0 * std::numbers::sqrt2 * noise_.at(d));
@@ -75,8 +83,7 @@ class SurfaceAnalysis {
         const int dx = u - x, dy = v - y, steps = std::max(std::abs(dx), std::abs(dy));
         if (other == kInvalidDepth || steps == 0) continue;
         ++sums.valid;
-        if (std::abs(other - d) <= noise + slope * static_cast<float>(steps))
-          sums.add(dx, dy, inverse_(u, v));
+        if (std::abs(other - d) <= noise + slope * static_cast<float>(steps)) sums.add(dx, dy, inverse(u, v));
       }
     }
   }
@@ -94,17 +101,17 @@ class SurfaceAnalysis {
     return normal / length;
   }
 
-  void setNormal(int x, int y, const Eigen::Vector3d& normal, PixelSurface& out) const {
+  void setNormal(int x, int y, const Eigen::Vector3d& normal, LocalSurface& out) const {
     const double cosine = -normal.dot(rayDirection(view_.projection, x, y, depth_(x, y)));
     const double sign = cosine < 0 ? -1.0 : 1.0;
-    out.normal(x, y) = (view_.world_from_camera.linear() * normal * sign).cast<float>();
-    out.incidence(x, y) = static_cast<float>(std::abs(cosine));
+    out.normal = (view_.world_from_camera.linear() * normal * sign).cast<float>();
+    out.incidence = static_cast<float>(std::abs(cosine));
   }
 
   const View& view_;
   const NoiseLaw& noise_;
   const Image<float>& depth_;
-  Image<float> inverse_;
+  const Image<float>& inverse_;
 };
 
 }  // namespace
@@ -113,13 +120,25 @@ PixelSurface analyseSurface(const View& view, const NoiseLaw& noise) {
   const int width = view.map.depth.width(), height = view.map.depth.height();
   PixelSurface result{Image<Eigen::Vector3f>(width, height, Eigen::Vector3f::Zero()),
                       Image<float>(width, height), Image<float>(width, height)};
-  const SurfaceAnalysis analysis(view, noise);
+  Image<float> inverse(width, height);
+  std::transform(view.map.depth.begin(), view.map.depth.end(), inverse.begin(),
+                 [](float d) { return d > 0 ? 1.0f / d : 0.0f; });
+  const SurfaceAnalysis analysis(view, noise, inverse);
   parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < width; ++x) analysis.analyse(x, y, result);
+      for (int x = 0; x < width; ++x) {
+        const LocalSurface local = analysis.analyse(x, y);
+        result.normal(x, y) = local.normal;
+        result.incidence(x, y) = local.incidence;
+        result.continuity(x, y) = local.continuity;
+      }
     }
   });
   return result;
+}
+
+Eigen::Vector3f surfaceNormal(const View& view, const NoiseLaw& noise, int x, int y) {
+  return SurfaceAnalysis(view, noise, {}).analyse(x, y).normal;
 }
 
 }  // namespace vdbfuse

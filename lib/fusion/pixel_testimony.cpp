@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "fusion/block_kernels.h"
-#include "vdbfuse/base/parallel.h"
-#include "vdbfuse/sensor/judged_view.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -37,7 +36,7 @@ class Hearing {
   static constexpr int kTile = 16;
 
  public:
-  Hearing(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
+  Hearing(const std::vector<View>& views, const std::vector<CompactSurface>& surfaces,
           const SensorModel& sensor, std::size_t index, const std::vector<std::size_t>& neighbours,
           const std::vector<std::vector<std::size_t>>& alternatives)
       : views_(views),
@@ -54,7 +53,7 @@ class Hearing {
 
   Image<PixelTestimony> hear(MissCounts& misses) const {
     const Image<float>& depth = views_[index_].map.depth;
-    Image<PixelTestimony> result(depth.width(), depth.height());
+    Image<PixelTestimony> result(depth.width(), depth.height(), {}, depth.memory());
     std::vector<PixelRun> runs = collectRuns();
     for (PixelRun& run : runs) {
       const PointBlock block(run.points);
@@ -116,11 +115,11 @@ class Hearing {
   PixelTestimony testimonyOf(std::size_t pixel, const Answers& answers) const {
     PixelTestimony testimony;
     testimony.measured = true;
-    testimony.agreement = capped(answers.agreeing, PixelTestimony::kAgreements);
-    testimony.contradiction = capped(answers.past, PixelTestimony::kContradictions);
-    testimony.occlusion = occlusionBin(answers.hidden);
-    testimony.misses = capped(answers.missed, PixelTestimony::kMisses);
-    testimony.continuity = continuityBin(surfaces_[index_].continuity.data()[pixel]);
+    testimony.agreement = capped(answers.agreeing, PixelTestimony::kAgreements) & 7u;
+    testimony.contradiction = capped(answers.past, PixelTestimony::kContradictions) & 3u;
+    testimony.occlusion = occlusionBin(answers.hidden) & 3u;
+    testimony.misses = capped(answers.missed, PixelTestimony::kMisses) & 7u;
+    testimony.continuity = surfaces_[index_].continuity.data()[pixel] & 3u;
     return testimony;
   }
 
@@ -149,7 +148,7 @@ class Hearing {
   };
 
   float depth(std::size_t pixel) const { return views_[index_].map.depth.data()[pixel]; }
-  const Eigen::Vector3f& normal(std::size_t pixel) const { return surfaces_[index_].normal.data()[pixel]; }
+  Eigen::Vector3f normal(std::size_t pixel) const { return surfaces_[index_].normal.data()[pixel].unpack(); }
 
   // An unknown normal may face anything.
   bool faces(const Eigen::Vector3f& normal, std::size_t view, const Eigen::Vector3d& point) const {
@@ -179,13 +178,13 @@ class Hearing {
     if (further * further >
         kAgreeSigmas * kAgreeSigmas * (asked.noise * asked.noise + other_noise * other_noise))
       return further > 0 ? Answer::SeesPast : Answer::Hidden;
-    const Eigen::Vector3f& other_normal = surfaces_[index].normal.data()[asked.pixel];
-    if (asked.normal.isZero() || other_normal.isZero()) return Answer::Agrees;
-    return asked.normal.dot(other_normal) >= kAgreeCosine ? Answer::Agrees : Answer::Hidden;
+    const PackedNormal other_normal = surfaces_[index].normal.data()[asked.pixel];
+    if (asked.normal.isZero() || other_normal.isNone()) return Answer::Agrees;
+    return asked.normal.dot(other_normal.unpack()) >= kAgreeCosine ? Answer::Agrees : Answer::Hidden;
   }
 
   const std::vector<View>& views_;
-  const std::vector<PixelSurface>& surfaces_;
+  const std::vector<CompactSurface>& surfaces_;
   const SensorModel& sensor_;
   std::size_t index_;
   const std::vector<std::size_t>& neighbours_;
@@ -196,15 +195,43 @@ class Hearing {
 
 }  // namespace
 
-Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
+CompactSurface compact(const PixelSurface& surface, std::pmr::memory_resource* memory) {
+  const int width = surface.normal.width(), height = surface.normal.height();
+  CompactSurface result{Image<PackedNormal>(width, height, {}, memory),
+                        Image<std::uint8_t>(width, height, 0, memory),
+                        Image<float>(surface.incidence, memory)};
+  std::transform(surface.normal.begin(), surface.normal.end(), result.normal.begin(),
+                 [](const Eigen::Vector3f& normal) { return PackedNormal(normal); });
+  std::transform(surface.continuity.begin(), surface.continuity.end(), result.continuity.begin(),
+                 continuityBin);
+  return result;
+}
+
+void letGo(const CompactSurface& surface) {
+  letGo(surface.normal), letGo(surface.continuity), letGo(surface.incidence);
+}
+
+Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<CompactSurface>& surfaces,
                            const SensorModel& sensor, const std::vector<std::vector<std::size_t>>& neighbours,
                            const std::vector<std::vector<std::size_t>>& alternatives,
-                           const Progress& progress) {
+                           const std::vector<std::size_t>& order, const Progress& progress) {
   Testimonies result;
   result.views.resize(views.size());
   std::vector<MissCounts> misses(views.size());
   ProgressStep step(progress, "judge pixels", views.size());
-  parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
+  Neighbourhoods hearings{order, neighbours, windowBytes(views.front().memory()), {}, {}};
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (const std::size_t other : neighbours[i]) {
+      if (other >= alternatives.size()) continue;
+      const std::vector<std::size_t>& layers = alternatives[other];
+      hearings.needed[i].insert(hearings.needed[i].end(), layers.begin(), layers.end());
+    }
+  }
+  hearings.bytes = [&](std::size_t i) {
+    return imageBytes(views[i]) + views[i].map.depth.size() * (sizeof(PackedNormal) + sizeof(PixelTestimony));
+  };
+  hearings.let_go = [&](std::size_t i) { letGo(views[i]), letGo(surfaces[i]), letGo(result.views[i]); };
+  forEachNeighbourhood(hearings, [&](std::size_t i) {
     result.views[i] = Hearing(views, surfaces, sensor, i, neighbours[i], alternatives).hear(misses[i]);
     step.advance();
   });

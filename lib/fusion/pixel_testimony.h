@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "fusion/packed_normal.h"
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/fusion/pixel_surface.h"
 #include "vdbfuse/fusion/view_graph.h"
@@ -25,10 +26,12 @@ struct PixelTestimony {
   /// misses.
   static constexpr std::size_t kAnswers = kAgreements * kContradictions + kOcclusions * kMisses;
 
-  std::uint8_t agreement = 0, contradiction = 0, occlusion = 0, misses = 0, continuity = 0;
+  // Two bytes.
+  std::uint16_t agreement : 3 = 0, contradiction : 2 = 0, occlusion : 2 = 0, misses : 3 = 0,
+                            continuity : 2 = 0;
   /// Not yet examined: the last bin, "nobody denies".
-  std::uint8_t denial = kDenials - 1;
-  bool measured = false;
+  std::uint16_t denial : 3 = kDenials - 1;
+  std::uint16_t measured : 1 = false;
 
   std::size_t answer() const {
     if (agreement > 0 || contradiction > 0)
@@ -36,6 +39,17 @@ struct PixelTestimony {
     return kAgreements * kContradictions + static_cast<std::size_t>(occlusion) * kMisses + misses;
   }
 };
+
+static_assert(sizeof(PixelTestimony) == 2);
+
+/// What judging keeps of the surface around each pixel (PixelSurface): nine bytes.
+struct CompactSurface {
+  Image<PackedNormal> normal;
+  Image<std::uint8_t> continuity;  ///< bin
+  Image<float> incidence;
+};
+CompactSurface compact(const PixelSurface& surface, std::pmr::memory_resource* memory);
+void letGo(const CompactSurface& surface);
 
 struct Testimonies {
   std::vector<Image<PixelTestimony>> views;
@@ -49,9 +63,10 @@ struct Testimonies {
 /// One that sees something nearer hides the point, which is strange where the surface faces it.
 /// `alternatives`: for each neighbour other views that hold further hypotheses of its pixels; it agrees when
 /// any of them does. Views beyond its end have none.
-Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<PixelSurface>& surfaces,
+/// `order`: the views, those near each other together.
+Testimonies hearNeighbours(const std::vector<View>& views, const std::vector<CompactSurface>& surfaces,
                            const SensorModel& sensor, const std::vector<std::vector<std::size_t>>& neighbours,
                            const std::vector<std::vector<std::size_t>>& alternatives,
-                           const Progress& progress);
+                           const std::vector<std::size_t>& order, const Progress& progress);
 
 }  // namespace vdbfuse

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -65,7 +66,11 @@ double pointSpacing(const JudgedViews& judged) {
   const std::size_t count = std::min(kViews, views.size());
   std::vector<std::vector<float>> by_view(count);
   parallelFor(count, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) by_view[i] = viewSpacings(views[i * views.size() / count]);
+    for (std::size_t i = begin; i < end; ++i) {
+      const JudgedView& view = views[i * views.size() / count];
+      by_view[i] = viewSpacings(view);
+      letGo(view);
+    }
   });
   std::vector<float> all;
   for (const std::vector<float>& spacing : by_view) all.insert(all.end(), spacing.begin(), spacing.end());

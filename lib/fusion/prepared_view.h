@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vdbfuse/geometry/projector.h"
-#include "vdbfuse/sensor/judged_view.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 
@@ -90,11 +90,19 @@ void forEachHypothesis(const PreparedView& prepared, std::size_t pixel, const Vi
   visit(view.depth.data()[pixel], left);
 }
 
-inline std::vector<PreparedView> prepare(const JudgedViews& judged) {
+/// Views [begin, end).
+inline std::vector<PreparedView> prepare(const JudgedViews& judged, std::size_t begin, std::size_t end) {
   std::vector<PreparedView> prepared;
-  prepared.reserve(judged.views.size());
-  for (const JudgedView& view : judged.views) prepared.emplace_back(view, judged.sensor);
+  prepared.reserve(end - begin);
+  for (; begin < end; ++begin) prepared.emplace_back(judged.views[begin], judged.sensor);
   return prepared;
+}
+
+/// Calls visit(prepared) for windows of the views, in order; `prepared` holds the views of one window.
+template <class Visit>
+void forEachPrepared(const JudgedViews& judged, const Visit& visit) {
+  forEachWindow(judged.views,
+                [&](std::size_t begin, std::size_t end) { visit(prepare(judged, begin, end)); });
 }
 
 }  // namespace vdbfuse

@@ -12,18 +12,21 @@
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/fusion/domain.h"
 #include "vdbfuse/fusion/no_return.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
 
-std::vector<PixelSurface> analyseAll(const std::vector<View>& views, const NoiseLaw& noise,
-                                     const Progress& progress) {
-  std::vector<PixelSurface> surfaces(views.size());
+std::vector<CompactSurface> analyseAll(const std::vector<View>& views, const NoiseLaw& noise,
+                                       const Progress& progress) {
+  std::vector<CompactSurface> surfaces;
+  surfaces.reserve(views.size());
   ProgressStep step(progress, "analyse surfaces", views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    surfaces[i] = analyseSurface(views[i], noise);
+  forEachView(views, [&](const View& view) {
+    surfaces.push_back(compact(analyseSurface(view, noise), view.memory()));
+    letGo(surfaces.back());
     step.advance();
-  }
+  });
   return surfaces;
 }
 
@@ -36,6 +39,7 @@ void setOutliers(const Testimonies& testimonies, const std::vector<Image<std::ui
       const double outlier = said.data()[p].measured ? table.outlier(c, said.data()[p]) : kMaxOutlier;
       views[i].outlier.data()[p] = std::clamp(static_cast<float>(outlier), kMinOutlier, kMaxOutlier);
     }
+    letGo(views[i].outlier), letGo(said), letGo(confidence[i]);
   });
 }
 
@@ -44,13 +48,11 @@ ReliabilityModel modelOf(const ReliabilityTable& table, const ConfidenceBins& bi
 }
 
 // Empty space around an object shows as a no-return along most of the border of most images; a room does not.
-bool trustNoReturn(const std::vector<Image<std::uint8_t>>& empty, JudgeOptions::NoReturn rule) {
+bool trustNoReturn(std::vector<double> border_shares, JudgeOptions::NoReturn rule) {
   constexpr double kMostOfTheBorder = 0.5;
   if (rule != JudgeOptions::NoReturn::Auto) return rule == JudgeOptions::NoReturn::Free;
-  std::vector<double> shares;
-  for (const Image<std::uint8_t>& view : empty) shares.push_back(borderShare(view));
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
+  const auto middle = border_shares.begin() + static_cast<std::ptrdiff_t>(border_shares.size() / 2);
+  std::nth_element(border_shares.begin(), middle, border_shares.end());
   return *middle > kMostOfTheBorder;
 }
 
@@ -58,13 +60,19 @@ bool trustNoReturn(const std::vector<Image<std::uint8_t>>& empty, JudgeOptions::
 void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoReturn rule,
                   std::vector<JudgedView>& views) {
   if (unmasked.empty()) return;
-  std::vector<Image<std::uint8_t>> empty(unmasked.size());
-  parallelFor(unmasked.size(), 1,
-              [&](std::size_t k, std::size_t) { empty[k] = emptyRegions(views[unmasked[k]].depth); });
-  if (!trustNoReturn(empty, rule)) return;
-  for (std::size_t k = 0; k < unmasked.size(); ++k) {
-    std::transform(empty[k].begin(), empty[k].end(), views[unmasked[k]].look.begin(),
+  std::vector<double> border_shares(unmasked.size());
+  parallelFor(unmasked.size(), 1, [&](std::size_t k, std::size_t) {
+    JudgedView& view = views[unmasked[k]];
+    const Image<std::uint8_t> empty = emptyRegions(view.depth);
+    border_shares[k] = borderShare(empty);
+    std::transform(empty.begin(), empty.end(), view.look.begin(),
                    [](std::uint8_t is_empty) { return is_empty ? Look::Empty : Look::Nothing; });
+    letGo(view);
+  });
+  if (trustNoReturn(std::move(border_shares), rule)) return;
+  for (const std::size_t i : unmasked) {
+    std::fill(views[i].look.begin(), views[i].look.end(), Look::Nothing);
+    letGo(views[i]);
   }
 }
 
@@ -94,25 +102,27 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
   const std::size_t count = views.size();
   for (View& view : views) applyMask(view.map);
   const ConfidenceBins bins(views);
-  const std::vector<Image<std::uint8_t>> confidence = bins.binAll(views);
+  const std::vector<Image<std::uint8_t>> confidence = bins.replace(views);
   std::vector<std::vector<std::size_t>> neighbours = chooseNeighbours(graph, count, options.neighbours);
+  std::vector<std::size_t> order = pathThrough(graph, count);
   const AlternativeViews alternatives(views);
   alternatives.extend(neighbours);
-  std::vector<PixelSurface> surfaces = analyseAll(views, sensor.noise, progress);
-  Testimonies testimonies = hearNeighbours(views, surfaces, sensor, neighbours, alternatives.of(), progress);
+  for (std::size_t i = count; i < views.size(); ++i) order.push_back(i);
+  std::vector<CompactSurface> surfaces = analyseAll(views, sensor.noise, progress);
+  Testimonies testimonies =
+      hearNeighbours(views, surfaces, sensor, neighbours, alternatives.of(), order, progress);
+  for (CompactSurface& surface : surfaces) surface.normal = {}, surface.continuity = {};
   alternatives.restore(views);
   ReliabilityTable table = learnReliability(testimonies, confidence);
 
   const std::vector<std::size_t> unmasked = viewsWithoutMask(views);
-
-  Judgement result;
-  JudgedViews& judged = result.judged = believe(std::move(views), sensor);
-  judged.miss_rate = testimonies.miss_rate;
   const std::vector<double> weights = redundancyWeights(graph, count);
-  for (std::size_t i = 0; i < count; ++i) {
-    judged.views[i].incidence = std::move(surfaces[i].incidence);
-    judged.views[i].weight = weights[i];
-  }
+  Judgement result;
+  std::vector<Image<float>> incidence(count);
+  for (std::size_t i = 0; i < count; ++i) incidence[i] = std::move(surfaces[i].incidence);
+  JudgedViews& judged = result.judged = believe(std::move(views), sensor, kMinOutlier, std::move(incidence));
+  judged.miss_rate = testimonies.miss_rate;
+  for (std::size_t i = 0; i < count; ++i) judged.views[i].weight = weights[i];
   setNoReturns(unmasked, options.no_return, judged.views);
   setOutliers(testimonies, confidence, table, judged.views);
   result.domain = options.domain ? *options.domain : supportedDomain(judged);

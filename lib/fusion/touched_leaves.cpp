@@ -68,12 +68,13 @@ std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame&
 
 }  // namespace
 
-std::vector<Index3> touchedLeaves(const std::vector<PreparedView>& views, const GridFrame& frame,
-                                  const Box& domain, const TouchOptions& options, const Progress& progress) {
-  std::vector<std::vector<Index3>> parts(views.size());
-  ProgressStep step(progress, "allocate grid", views.size());
-  parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
-    parts[i] = touchedByView(views[i], frame, domain, options);
+std::vector<Index3> touchedLeaves(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
+                                  const TouchOptions& options, const Progress& progress) {
+  std::vector<std::vector<Index3>> parts(judged.views.size());
+  ProgressStep step(progress, "allocate grid", judged.views.size());
+  parallelFor(judged.views.size(), 1, [&](std::size_t i, std::size_t) {
+    parts[i] = touchedByView(PreparedView(judged.views[i], judged.sensor), frame, domain, options);
+    letGo(judged.views[i]);
     step.advance();
   });
   std::vector<Index3> all;

@@ -20,7 +20,7 @@ struct TouchOptions {
 };
 
 /// Origins of all leaves within reach of the views' points inside `domain`, sorted.
-std::vector<Index3> touchedLeaves(const std::vector<PreparedView>& views, const GridFrame& frame,
-                                  const Box& domain, const TouchOptions& options, const Progress& progress);
+std::vector<Index3> touchedLeaves(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
+                                  const TouchOptions& options, const Progress& progress);
 
 }  // namespace vdbfuse

@@ -32,21 +32,27 @@ void addView(const PreparedView& prepared, const GridFrame& frame, double trunca
 TsdfVolume integrateTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
                          const TsdfOptions& options, const Progress& progress) {
   if (!(options.truncation > 0)) throw InvalidArgument("truncation", "must be positive");
-  const std::vector<PreparedView> views = prepare(judged);
   const TouchOptions touch{1.0f, 2.0f, [&](double) { return options.truncation; }};
-  const std::vector<Index3> leaves = touchedLeaves(views, frame, domain, touch, progress);
+  const std::vector<Index3> leaves = touchedLeaves(judged, frame, domain, touch, progress);
   TsdfVolume volume{ScalarGrid("surface", frame, kUnknown, leaves),
                     ScalarGrid("weight", frame, 0.0f, leaves)};
-  ProgressStep step(progress, "integrate", leaves.size());
+  ProgressStep step(progress, "integrate", leaves.size() * judged.views.size());
+  volume.distance.forEachLeaf([](const ScalarGrid::Leaf& sum) { std::ranges::fill(sum.values, 0.0f); });
+  forEachPrepared(judged, [&](const std::vector<PreparedView>& views) {
+    parallelFor(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        for (const PreparedView& view : views)
+          addView(view, frame, options.truncation, volume.distance.leaf(i), volume.weight.leaf(i));
+      }
+      step.advance((end - begin) * views.size());
+    });
+  });
   parallelFor(leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const ScalarGrid::Leaf sum = volume.distance.leaf(i), weight = volume.weight.leaf(i);
-      std::fill(sum.values.begin(), sum.values.end(), 0.0f);
-      for (const PreparedView& view : views) addView(view, frame, options.truncation, sum, weight);
       std::transform(sum.values.begin(), sum.values.end(), weight.values.begin(), sum.values.begin(),
                      [](float s, float w) { return w > 0 ? s / w : kUnknown; });
     }
-    step.advance(end - begin);
   });
   volume.distance.setKind(GridKind::LevelSet);
   volume.distance.metadata()["about"] = "truncated signed distance (Curless and Levoy 1996), > 0 outside";
@@ -54,9 +60,9 @@ TsdfVolume integrateTsdf(const JudgedViews& judged, const GridFrame& frame, cons
 }
 
 std::vector<double> untruncatedSum(const JudgedViews& judged, const std::vector<Eigen::Vector3d>& points) {
-  const std::vector<PreparedView> views = prepare(judged);
   std::vector<double> sums(points.size(), 0.0);
-  for (const PreparedView& prepared : views) {
+  for (const JudgedView& view : judged.views) {
+    const PreparedView prepared(view, judged.sensor);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::optional<Sighting> seen = prepared.projector(points[i]);
       if (!seen) continue;
@@ -64,6 +70,7 @@ std::vector<double> untruncatedSum(const JudgedViews& judged, const std::vector<
       if (measured == kInvalidDepth) continue;
       sums[i] += prepared.view->weight * (measured - seen->depth) / prepared.noise.at(measured);
     }
+    letGo(view);
   }
   return sums;
 }

@@ -98,6 +98,24 @@ std::vector<std::vector<std::size_t>> chooseNeighbours(const ViewGraph& graph, s
   return result;
 }
 
+std::vector<std::size_t> pathThrough(const ViewGraph& graph, std::size_t views) {
+  std::vector<std::size_t> path;
+  std::vector<bool> visited(views, false);
+  const auto visit = [&](std::size_t view) { path.push_back(view), visited[view] = true; };
+  for (std::size_t first = 0; first < views; ++first) {
+    if (visited[first]) continue;
+    visit(first);
+    for (bool stuck = false; !stuck;) {
+      const std::vector<std::size_t>& order = graph.byAngle(path.back());
+      const auto next =
+          std::find_if_not(order.begin(), order.end(), [&](std::size_t v) { return visited[v]; });
+      stuck = next == order.end();
+      if (!stuck) visit(*next);
+    }
+  }
+  return path;
+}
+
 std::vector<double> redundancyWeights(const ViewGraph& graph, std::size_t views) {
   const double enough = std::min(0.9 * static_cast<double>(views), 12.0);
   constexpr int kHalvings = 20;

@@ -12,6 +12,7 @@
 #include "vdbfuse/fusion/pixel_surface.h"
 #include "vdbfuse/io/atomic_file.h"
 #include "vdbfuse/io/png.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -86,6 +87,7 @@ void writeJudgement(const fs::path& folder, const JudgedScan& scan, const Judgem
   parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
     writePng(folder / (views[i].name + ".png"), reliabilityImage(views[i]));
     writePng(codesPath(folder, views[i].name), encodePixels(views[i]));
+    letGo(views[i]);
   });
   writeText(folder / kText, judgementText(scan));
   writeText(folder / kJson, judgementJson(scan, origin));
@@ -103,14 +105,17 @@ JudgedScan readJudgement(const fs::path& folder, const ViewSequence& sequence, c
 
   timer.start("read judgement");
   std::vector<Image<float>> incidence(views.size());
-  for (std::size_t i = 0; i < views.size(); ++i)
-    incidence[i] = analyseSurface(views[i], read.sensor.noise).incidence;
-  JudgedViews& judged = scan.judgement.judged = believe(std::move(views), read.sensor);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    incidence[i] = Image<float>(analyseSurface(views[i], read.sensor.noise).incidence, views[i].memory());
+    letGo(views[i]), letGo(incidence[i]);
+  }
+  JudgedViews& judged = scan.judgement.judged =
+      believe(std::move(views), read.sensor, kMinOutlier, std::move(incidence));
   ProgressStep step(progress, "read judgement", judged.views.size());
   parallelFor(judged.views.size(), 1, [&](std::size_t i, std::size_t) {
-    judged.views[i].incidence = std::move(incidence[i]);
     judged.views[i].weight = read.views[i].weight;
     decodePixels(readCodes(folder, read.views[i]), judged.views[i]);
+    letGo(judged.views[i]);
     step.advance();
   });
   judged.miss_rate = read.calibration.miss_rate;

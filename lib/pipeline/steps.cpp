@@ -8,6 +8,7 @@
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/fusion/point_spacing.h"
+#include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
@@ -113,8 +114,9 @@ Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const V
   if (options.outliers) {
     report.outlier_share = *options.outliers;
     const float outlier = std::clamp(static_cast<float>(*options.outliers), 1e-6f, kMaxOutlier);
-    for (JudgedView& view : judgement.judged.views)
+    forEachView(judgement.judged.views, [outlier](JudgedView& view) {
       std::fill(view.outlier.begin(), view.outlier.end(), outlier);
+    });
   }
   return judgement;
 }

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdbfuse/sensor/view_windows.h"
+
 namespace vdbfuse {
 namespace {
 
 Image<Look> lookThrough(const DepthMap& map) {
-  Image<Look> look(map.depth.width(), map.depth.height(), Look::Nothing);
+  Image<Look> look(map.depth.width(), map.depth.height(), Look::Nothing, map.depth.memory());
   std::transform(map.mask.begin(), map.mask.end(), look.begin(),
                  [](std::uint8_t object) { return object ? Look::Nothing : Look::Outside; });
   return look;
@@ -16,18 +18,25 @@ Image<Look> lookThrough(const DepthMap& map) {
 
 }  // namespace
 
-JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier) {
+JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier,
+                    std::vector<Image<float>> incidence) {
   JudgedViews result;
   result.sensor = sensor;
-  for (View& view : views) {
+  incidence.resize(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    View& view = views[i];
     JudgedView judged;
     static_cast<ViewHeader&>(judged) = std::move(static_cast<ViewHeader&>(view));
     applyMask(view.map);
     judged.look = lookThrough(view.map);
     judged.depth = std::move(view.map.depth);
     judged.alternatives = std::move(view.map.alternatives);
-    judged.outlier = Image<float>(judged.depth.width(), judged.depth.height(), static_cast<float>(outlier));
-    judged.incidence = Image<float>(judged.depth.width(), judged.depth.height());
+    const int width = judged.depth.width(), height = judged.depth.height();
+    judged.outlier = Image<float>(width, height, static_cast<float>(outlier), judged.memory());
+    judged.incidence = std::move(incidence[i]);
+    if (judged.incidence.empty()) judged.incidence = Image<float>(width, height, 0.0f, judged.memory());
+    view.map = {};
+    letGo(judged);
     result.views.push_back(std::move(judged));
   }
   return result;

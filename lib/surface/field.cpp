@@ -8,6 +8,7 @@
 #include "surface/label_blocks.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/geometry/projector.h"
+#include "vdbfuse/sensor/view_windows.h"
 #include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
@@ -19,6 +20,7 @@ constexpr double kSameSide = 1.5;     // noise widths or voxels: beyond this a v
 constexpr float kPutBack = 0.05f;     // voxels: what a voxel gets whose smoothed value has the wrong sign
 constexpr float kLeastCosine = 0.2f;  // incidence of pixels without a normal
 constexpr std::size_t kLeavesPerTask = 8;
+constexpr std::size_t kLeavesPerPass = 16384;  // at most 200 MB of sums
 
 // A leaf with a margin of R voxels taken from its 26 neighbours.
 template <int R>
@@ -54,42 +56,34 @@ Padded<R> loadPadded(const ScalarGrid& grid, const Index3& origin) {
   return result;
 }
 
-// The mean signed distance that the depth maps give a point.
+// Sums for the mean signed distance that the depth maps give a voxel.
+struct DistanceSum {
+  double distance = 0, weight = 0;
+};
+
+// What the views that see this side of the surface measured.
 class DistanceMeter {
  public:
-  DistanceMeter(const JudgedViews& judged, double voxel) : judged_(judged), voxel_(voxel) {
-    for (const JudgedView& view : judged.views)
-      projectors_.emplace_back(view.projection, view.world_from_camera);
-  }
+  DistanceMeter(const SensorModel& sensor, double voxel) : sensor_(sensor), voxel_(voxel) {}
 
-  // Nothing when no view that sees this side of the surface measured it.
-  std::optional<double> at(const Eigen::Vector3d& point, CellLabel label) const {
-    double sum = 0, weights = 0;
-    for (std::size_t i = 0; i < projectors_.size(); ++i) {
-      const std::optional<Sighting> seen = projectors_[i](point);
-      if (!seen) continue;
-      const JudgedView& view = judged_.views[i];
-      const float measured = view.depth(seen->x, seen->y);
-      if (measured == kInvalidDepth) continue;
-      const double distance = measured - seen->depth;
-      if (std::abs(distance) > 3 * voxel_ + 3 * judged_.sensor.noise.at(measured)) continue;
-      const double noise = lookupNoise(judged_.sensor, view.projection, measured);
-      const double contradiction = label == CellLabel::Outside ? -distance : distance;
-      if (contradiction > kSameSide * std::max(voxel_, noise)) continue;
-      const double cosine = std::max(view.incidence(seen->x, seen->y), kLeastCosine);
-      const double weight =
-          view.weight * (1 - view.outlier(seen->x, seen->y)) * cosine * cosine / (noise * noise);
-      sum += weight * distance * cosine;
-      weights += weight;
-    }
-    if (!(weights > 0)) return std::nullopt;
-    return sum / weights;
+  void add(const JudgedView& view, const Sighting& seen, CellLabel label, DistanceSum& sum) const {
+    const float measured = view.depth(seen.x, seen.y);
+    if (measured == kInvalidDepth) return;
+    const double distance = measured - seen.depth;
+    if (std::abs(distance) > 3 * voxel_ + 3 * sensor_.noise.at(measured)) return;
+    const double noise = lookupNoise(sensor_, view.projection, measured);
+    const double contradiction = label == CellLabel::Outside ? -distance : distance;
+    if (contradiction > kSameSide * std::max(voxel_, noise)) return;
+    const double cosine = std::max(view.incidence(seen.x, seen.y), kLeastCosine);
+    const double weight =
+        view.weight * (1 - view.outlier(seen.x, seen.y)) * cosine * cosine / (noise * noise);
+    sum.distance += weight * distance * cosine;
+    sum.weight += weight;
   }
 
  private:
-  const JudgedViews& judged_;
+  const SensorModel& sensor_;
   double voxel_;
-  std::vector<Projector> projectors_;
 };
 
 float towards(CellLabel label, float magnitude) {
@@ -126,27 +120,87 @@ bool isNearBoundary(const Padded<2>& labels, const Index3& v) {
   return false;
 }
 
-// First values: measured distance where supported, half a voxel elsewhere, the cut-off far from the boundary.
-void measureLeaf(const ScalarGrid& labels, const ScalarGrid& support, const DistanceMeter& meter,
-                 const FieldOptions& options, const ScalarGrid::Leaf& out) {
+// A voxel of a leaf that is measured.
+struct MeasuredVoxel {
+  int place = 0;
+  CellLabel label = CellLabel::Outside;
+  DistanceSum sum;
+};
+
+// First values: half a voxel near the boundary, the cut-off far from it. Returns the voxels near it that are
+// supported: those have a measured distance.
+std::vector<MeasuredVoxel> startLeaf(const ScalarGrid& labels, const ScalarGrid& support,
+                                     const FieldOptions& options, const ScalarGrid::Leaf& out) {
   const Padded<2> near = loadPadded<2>(labels, out.origin);
   const float voxel = static_cast<float>(labels.frame().voxel);
+  const std::optional<std::size_t> found = support.findLeaf(out.origin);
+  std::vector<MeasuredVoxel> measured;
   for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
     const Index3 v = leafOffset(i);
     const CellLabel label = labelOf(near.at(v.x(), v.y(), v.z()));
-    float& value = out.values[static_cast<std::size_t>(i)];
-    if (!isNearBoundary(near, v)) {
-      value = towards(label, static_cast<float>(kCutOff) * voxel);
-      continue;
-    }
-    value = towards(label, 0.5f * voxel);
-    if (support.at(out.origin + v) < options.supported) continue;
-    const std::optional<double> distance = meter.at(labels.frame().toWorld(Index3(out.origin + v)), label);
-    if (!distance) continue;
-    const float limit = static_cast<float>(kCutOff) * voxel;
-    value = std::clamp(static_cast<float>(*distance), -limit, limit);
-    if (!agrees(value, label)) value = towards(label, kPutBack * voxel);
+    const bool is_near = isNearBoundary(near, v);
+    out.values[static_cast<std::size_t>(i)] =
+        towards(label, (is_near ? 0.5f : static_cast<float>(kCutOff)) * voxel);
+    if (is_near && found && support.leaf(*found).values[static_cast<std::size_t>(i)] >= options.supported)
+      measured.push_back({i, label, {}});
   }
+  return measured;
+}
+
+void addViews(const std::vector<const JudgedView*>& views, const std::vector<Projector>& projectors,
+              const DistanceMeter& meter, const GridFrame& frame, const Index3& origin,
+              std::vector<MeasuredVoxel>& voxels) {
+  if (voxels.empty()) return;
+  constexpr double kLeafRadius = 0.5 * ScalarGrid::kLeafSide * 1.7320508;
+  const Eigen::Vector3d centre =
+      frame.toWorld(Eigen::Vector3d(origin.cast<double>().array() + 0.5 * (ScalarGrid::kLeafSide - 1)));
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    if (!projectors[k].mightSee(centre, kLeafRadius * frame.voxel)) continue;
+    for (MeasuredVoxel& voxel : voxels) {
+      const auto seen = projectors[k](frame.toWorld(Index3(origin + leafOffset(voxel.place))));
+      if (seen) meter.add(*views[k], *seen, voxel.label, voxel.sum);
+    }
+  }
+}
+
+void setMeasured(const std::vector<MeasuredVoxel>& voxels, float voxel_size, const ScalarGrid::Leaf& out) {
+  const float limit = static_cast<float>(kCutOff) * voxel_size;
+  for (const MeasuredVoxel& voxel : voxels) {
+    if (!(voxel.sum.weight > 0)) continue;
+    float& value = out.values[static_cast<std::size_t>(voxel.place)];
+    value = std::clamp(static_cast<float>(voxel.sum.distance / voxel.sum.weight), -limit, limit);
+    if (!agrees(value, voxel.label)) value = towards(voxel.label, kPutBack * voxel_size);
+  }
+}
+
+// First values of leaves [begin, end). Windows of views pass by on the outside.
+void measureLeaves(const JudgedViews& judged, const ScalarGrid& labels, const ScalarGrid& support,
+                   const FieldOptions& options, std::size_t begin, std::size_t end, ScalarGrid& out) {
+  const GridFrame& frame = labels.frame();
+  const DistanceMeter meter(judged.sensor, frame.voxel);
+  std::vector<std::vector<MeasuredVoxel>> voxels(end - begin);
+  const auto for_each_leaf = [&](const auto& visit) {
+    parallelFor(end - begin, kLeavesPerTask, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) visit(out.leaf(begin + i), voxels[i]);
+    });
+  };
+  for_each_leaf([&](const ScalarGrid::Leaf& leaf, std::vector<MeasuredVoxel>& measured) {
+    measured = startLeaf(labels, support, options, leaf);
+  });
+  forEachWindow(judged.views, [&](std::size_t first, std::size_t last) {
+    std::vector<const JudgedView*> views;
+    std::vector<Projector> projectors;
+    for (std::size_t i = first; i < last; ++i) {
+      views.push_back(&judged.views[i]);
+      projectors.emplace_back(judged.views[i].projection, judged.views[i].world_from_camera);
+    }
+    for_each_leaf([&](const ScalarGrid::Leaf& leaf, std::vector<MeasuredVoxel>& measured) {
+      addViews(views, projectors, meter, frame, leaf.origin, measured);
+    });
+  });
+  for_each_leaf([&](const ScalarGrid::Leaf& leaf, const std::vector<MeasuredVoxel>& measured) {
+    setMeasured(measured, static_cast<float>(frame.voxel), leaf);
+  });
 }
 
 std::array<float, 5> gaussianWeights(double sigma) {
@@ -201,12 +255,12 @@ ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const st
   const std::vector<Index3> blocks = boundaryBlocks(octree, faces, labels, options.beyond, kReach);
   const ScalarGrid sides = labelGrid(octree, labels, options.beyond, blocks);
   ScalarGrid measured("surface", octree.frame, kUnknown, blocks);
-  const DistanceMeter meter(judged, octree.frame.voxel);
   ProgressStep step(progress, "place surface", measured.leafCount());
-  parallelFor(measured.leafCount(), kLeavesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) measureLeaf(sides, support, meter, options, measured.leaf(i));
+  for (std::size_t begin = 0; begin < measured.leafCount(); begin += kLeavesPerPass) {
+    const std::size_t end = std::min(begin + kLeavesPerPass, measured.leafCount());
+    measureLeaves(judged, sides, support, options, begin, end, measured);
     step.advance(end - begin);
-  });
+  }
   measured.setKind(GridKind::LevelSet);
   measured.metadata()["about"] = "signed distance to the surface, > 0 outside";
   if (!(options.smoothing_voxels > 0)) return measured;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "fusion/pixel_testimony.h"
 #include "fusion/scenes.h"
@@ -174,11 +175,14 @@ TEST(Judge, ADepthOutsideTheMaskIsBackground) {
 
 TEST(Judge, NeighboursContradictAPointOutsideTheirMasks) {
   std::vector<View> views = test::sphereViews(24);
-  std::vector<PixelSurface> surfaces;
-  for (const View& view : views) surfaces.push_back(analyseSurface(view, test::sphereSensor().noise));
+  std::vector<CompactSurface> surfaces;
+  for (const View& view : views)
+    surfaces.push_back(compact(analyseSurface(view, test::sphereSensor().noise), view.memory()));
+  std::vector<std::size_t> order(views.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   const auto neighbours = chooseNeighbours(ViewGraph(test::headersOf(views), 1.7), views.size());
   const auto hear = [&] {
-    return hearNeighbours(views, surfaces, test::sphereSensor(), neighbours, {}, {}).views[0](32, 32);
+    return hearNeighbours(views, surfaces, test::sphereSensor(), neighbours, {}, order, {}).views[0](32, 32);
   };
   EXPECT_EQ(hear().contradiction, 0);
   EXPECT_GT(hear().agreement, 0);

@@ -82,7 +82,10 @@ Json meshJson(const Reconstruction& result, const TopologyReport& t) {
 Json stepsJson(const std::vector<StepTime>& steps) {
   Json list = Json::array();
   for (const StepTime& s : steps) {
-    list.push_back({{"name", s.name}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
+    list.push_back({{"name", s.name},
+                    {"seconds", s.seconds},
+                    {"cpu_seconds", s.cpu_seconds},
+                    {"peak_memory_bytes", s.peak_memory_bytes}});
   }
   return list;
 }

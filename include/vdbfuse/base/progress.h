@@ -44,11 +44,12 @@ class ProgressStep {
   std::atomic<std::size_t> done_{0};
 };
 
-/// Wall and processor time of one named step.
+/// Wall and processor time of one named step, and memory.
 struct StepTime {
   std::string name;
-  double seconds = 0.0;      ///< wall clock
-  double cpu_seconds = 0.0;  ///< all threads of the process
+  double seconds = 0.0;               ///< wall clock
+  double cpu_seconds = 0.0;           ///< all threads of the process
+  std::size_t peak_memory_bytes = 0;  ///< peakMemoryBytes() at its end
 };
 
 /// Measures consecutive steps: start() ends the step before it.

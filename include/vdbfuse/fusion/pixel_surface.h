@@ -22,4 +22,7 @@ struct PixelSurface {
 /// explains. Normals: least-squares plane in 1/d over the continuing neighbours, six at least.
 PixelSurface analyseSurface(const View& view, const NoiseLaw& noise);
 
+/// The normal of one pixel of it.
+Eigen::Vector3f surfaceNormal(const View& view, const NoiseLaw& noise, int x, int y);
+
 }  // namespace vdbfuse

@@ -35,6 +35,10 @@ struct NeighbourOptions {
 std::vector<std::vector<std::size_t>> chooseNeighbours(const ViewGraph& graph, std::size_t views,
                                                        const NeighbourOptions& options = {});
 
+/// All views, each as near as may be to the one before it: neighbours in space come near each other in the
+/// order.
+std::vector<std::size_t> pathThrough(const ViewGraph& graph, std::size_t views);
+
 /// w_i = 1/Σ_j exp(−(θ_ij/θ₀)²), θ₀ = 5° halved until Σ w ≥ min(0.9 N, 12): a video repeats its mistakes.
 std::vector<double> redundancyWeights(const ViewGraph& graph, std::size_t views);
 

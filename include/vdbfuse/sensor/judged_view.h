@@ -34,6 +34,7 @@ struct JudgedView : ViewHeader {
   Image<Look> look;
   /// w_i in (0, 1]: how much of this view is not a repetition of its neighbours.
   double weight = 1.0;
+  std::pmr::memory_resource* memory() const { return depth.memory(); }
 };
 
 /// Views judged, and the model of the sensor that all of them share.
@@ -45,8 +46,9 @@ struct JudgedViews {
 };
 
 /// Views that are believed as they are: every valid pixel has outlier probability `outlier`, and the masks
-/// say where to look past the object.
-JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier = kMinOutlier);
+/// say where to look past the object. `incidence`: of each view, where it is known.
+JudgedViews believe(std::vector<View> views, const SensorModel& sensor, double outlier = kMinOutlier,
+                    std::vector<Image<float>> incidence = {});
 
 /// Noise scale of a measurement that is looked up at the nearest pixel: sensor noise plus the slack of a
 /// slanted surface, about 0.4 pixel footprints.

@@ -56,6 +56,8 @@ struct ViewHeader {
 /// A view with its images in memory.
 struct View : ViewHeader {
   DepthMap map;
+  /// Where its images lie, and where others about it should.
+  std::pmr::memory_resource* memory() const { return map.depth.memory(); }
 };
 
 /// The world point of pixel (x, y). REQUIRES: the pixel is valid.
