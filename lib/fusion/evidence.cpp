@@ -94,41 +94,50 @@ std::size_t sampleCount(int level) {
   return side * side * side;
 }
 
-// Cells [begin, end) that are evaluated together, in tasks of kCellsPerTask.
+// Cells that are evaluated together, in tasks of kCellsPerTask.
 struct CellPass {
-  std::size_t begin = 0, end = 0;
+  std::vector<std::uint32_t> cells;
   std::vector<std::size_t> first{0};  // sample of each task, and the number of all
 };
 
-std::vector<CellPass> passesOf(const Octree& octree, std::size_t capacity) {
-  std::vector<CellPass> passes;
-  for (std::size_t begin = 0; begin < octree.cellCount(); begin += kCellsPerTask) {
-    const std::size_t end = std::min(begin + kCellsPerTask, octree.cellCount());
-    std::size_t samples = 0;
-    for (std::size_t cell = begin; cell < end; ++cell) samples += sampleCount(octree.levels[cell]);
-    if (passes.empty() || passes.back().first.back() + samples > capacity)
-      passes.push_back({begin, begin, {0}});
-    passes.back().end = end;
-    passes.back().first.push_back(passes.back().first.back() + samples);
+std::size_t taskEnd(const CellPass& pass, std::size_t task) {
+  return std::min((task + 1) * kCellsPerTask, pass.cells.size());
+}
+
+// The cells that are not known yet.
+std::vector<CellPass> passesOf(const Octree& octree, const CellEvidence& known, std::size_t capacity) {
+  std::vector<CellPass> passes(1);
+  std::size_t samples = 0;  // of the task that is being filled
+  for (std::size_t c = 0; c < octree.cellCount(); ++c) {
+    if (!std::isnan(known.mean[c])) continue;
+    CellPass* pass = &passes.back();
+    if (pass->cells.size() % kCellsPerTask == 0 && !pass->cells.empty()) {
+      pass->first.push_back(pass->first.back() + samples);
+      samples = 0;
+      if (pass->first.back() >= capacity) pass = &passes.emplace_back();
+    }
+    pass->cells.push_back(static_cast<std::uint32_t>(c));
+    samples += sampleCount(octree.levels[c]);
   }
+  passes.back().first.push_back(passes.back().first.back() + samples);
   return passes;
 }
 
-void evaluateCells(const Combiner& combiner, const Octree& octree, const CellPass& pass,
-                   std::vector<float>& sigma) {
+void evaluate(const Combiner& combiner, const Octree& octree, const CellPass& pass, CellEvidence& evidence) {
   const std::vector<float> values = combiner.combine(pass.first, [&](std::size_t task) {
-    const std::size_t begin = pass.begin + task * kCellsPerTask;
     std::vector<Eigen::Vector3d> points;
-    for (std::size_t cell = begin; cell < std::min(begin + kCellsPerTask, pass.end); ++cell)
-      appendSamples(octree, cell, points);
+    for (std::size_t i = task * kCellsPerTask; i < taskEnd(pass, task); ++i)
+      appendSamples(octree, pass.cells[i], points);
     return points;
   });
   const float* next = values.data();
-  for (std::size_t cell = pass.begin; cell < pass.end; ++cell) {
+  for (const std::uint32_t cell : pass.cells) {
     const std::size_t count = sampleCount(octree.levels[cell]);
+    const auto [low, high] = std::minmax_element(next, next + count);
+    evidence.weakest[cell] = *low > 0 ? *low : *high < 0 ? *high : 0.0f;
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) sum += *next++;
-    sigma[cell] = static_cast<float>(sum / static_cast<double>(count));
+    evidence.mean[cell] = static_cast<float>(sum / static_cast<double>(count));
   }
 }
 
@@ -170,17 +179,23 @@ std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen
   return Combiner(judged, options).combine({0, points.size()}, [&](std::size_t) { return points; });
 }
 
-std::vector<float> evidence(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
-                            const Progress& progress) {
+void evaluateCells(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
+                   CellEvidence& evidence, const Progress& progress) {
   requireValid(options);
   const Combiner combiner(judged, options);
-  std::vector<float> sigma(octree.cellCount());
-  ProgressStep step(progress, "evidence", octree.cellCount());
-  for (const CellPass& pass : passesOf(octree, combiner.capacity())) {
-    evaluateCells(combiner, octree, pass, sigma);
-    step.advance(pass.end - pass.begin);
+  const std::vector<CellPass> passes = passesOf(octree, evidence, combiner.capacity());
+  ProgressStep step(progress, "evidence", passes.size());
+  for (const CellPass& pass : passes) {
+    evaluate(combiner, octree, pass, evidence);
+    step.advance();
   }
-  return sigma;
+}
+
+std::vector<float> evidence(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
+                            const Progress& progress) {
+  CellEvidence result(octree.cellCount());
+  evaluateCells(judged, octree, options, result, progress);
+  return std::move(result.mean);
 }
 
 }  // namespace vdbfuse

@@ -44,14 +44,14 @@ std::vector<std::size_t> cellsWithSensors(const Octree& octree, const std::vecto
 
 }  // namespace
 
-CavityReport fillUnseenCavities(const Octree& octree, const std::vector<CellFace>& faces,
+CavityReport fillUnseenCavities(const Octree& octree, const CellTiles& tiles,
                                 const std::vector<Eigen::Vector3d>& sensors, Border border,
                                 std::vector<CellLabel>& labels) {
   Components components(labels.size());
   const auto empty = [&](std::size_t cell) { return labels[cell] == CellLabel::Outside; };
-  for (const CellFace& face : faces) {
+  forEachFace(tiles, [&](const CellFace& face) {
     if (empty(face.first) && empty(face.second)) components.join(face.first, face.second);
-  }
+  });
   const std::vector<std::size_t> sensor_cells = cellsWithSensors(octree, sensors);
   const bool border_is_open = border != Border::Solid || sensor_cells.empty();
   std::vector<bool> open(labels.size(), false);

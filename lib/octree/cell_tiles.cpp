@@ -6,6 +6,7 @@
 #include <bit>
 #include <optional>
 
+#include "octree/cell_set.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 
@@ -25,19 +26,6 @@ struct Level {
     return tiles[static_cast<std::size_t>(found - codes.begin())];
   }
 };
-
-/// Slot of a cell from the lowest six bits of its Morton code in units of the cell.
-std::uint32_t slotOf(std::uint64_t code) {
-  static const auto kSlotByCode = [] {
-    std::array<std::uint8_t, lattice::kSlots> slots{};
-    for (std::uint64_t c = 0; c < lattice::kSlots; ++c) {
-      const Index3 position = mortonPosition(c);
-      slots[c] = static_cast<std::uint8_t>(position.x() + 4 * position.y() + 16 * position.z());
-    }
-    return slots;
-  }();
-  return kSlotByCode[code % lattice::kSlots];
-}
 
 class Tiler {
  public:

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "octree/tile_faces.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {

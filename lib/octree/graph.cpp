@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "octree/cut_prices.h"
-#include "octree/tile_faces.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/mincut/solve.h"
@@ -13,15 +12,6 @@
 
 namespace vdbfuse {
 namespace {
-
-constexpr std::size_t kCellsPerTask = 4096;
-constexpr std::size_t kTilesPerTask = 256;
-
-CellFace faceOf(const CellTiles& tiles, std::uint32_t first, std::uint32_t second, int direction) {
-  return {tiles.cells[first], tiles.cells[second], static_cast<std::uint8_t>(direction / 2),
-          static_cast<std::int8_t>(lattice::isForward(direction) ? 1 : -1),
-          faceArea(tiles.levels[first / lattice::kSlots])};
-}
 
 CutEnergy energyOf(const CutPrices& prices, const std::vector<CellLabel>& labels) {
   const CellTiles& tiles = prices.tiles;
@@ -51,29 +41,21 @@ CutEnergy energyOf(const CutPrices& prices, const std::vector<CellLabel>& labels
   return energy;
 }
 
-}  // namespace
-
-std::vector<CellFace> cellFaces(const Octree& octree) { return cellFaces(tileCells(octree)); }
-
-std::vector<CellFace> cellFaces(const CellTiles& tiles) {
-  std::vector<std::vector<CellFace>> parts(chunkCount(tiles.count(), kTilesPerTask));
-  parallelFor(tiles.count(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
-    std::vector<CellFace>& part = parts[begin / kTilesPerTask];
-    for (auto tile = static_cast<std::uint32_t>(begin); tile < end; ++tile) {
-      forEachEqualFace(tiles, tile, [&](std::uint32_t node, std::uint32_t neighbour, int direction) {
-        part.push_back(faceOf(tiles, node, neighbour, direction));
-      });
+// Mean over a cube of voxels of a leaf.
+float meanFrom(const ScalarGrid::Leaf& leaf, const Index3& low, int side, float threshold) {
+  float sum = 0;
+  for (int x = 0; x < side; ++x) {
+    for (int y = 0; y < side; ++y) {
+      for (int z = 0; z < side; ++z) {
+        const float value = leaf.at(low.x() + x, low.y() + y, low.z() + z);
+        sum += value >= threshold ? value : 0.0f;
+      }
     }
-  });
-  std::size_t total = tiles.transitions.size();
-  for (const auto& part : parts) total += part.size();
-  std::vector<CellFace> faces;
-  faces.reserve(total);
-  for (const auto& part : parts) faces.insert(faces.end(), part.begin(), part.end());
-  for (const CellTransition& t : tiles.transitions)
-    faces.push_back(faceOf(tiles, t.fine, t.coarse, t.direction));
-  return faces;
+  }
+  return sum / static_cast<float>(side * side * side);
 }
+
+}  // namespace
 
 Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
                    const std::vector<float>& sigma, const CutOptions& options, const Progress& progress) {
@@ -95,23 +77,33 @@ Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vect
   return result;
 }
 
-std::vector<float> sampleFinest(const Octree& octree, const ScalarGrid& grid) {
+std::vector<float> sampleCells(const Octree& octree, const ScalarGrid& grid, float threshold) {
+  constexpr std::size_t kLeavesPerTask = 64;
   std::vector<float> values(octree.cellCount(), 0.0f);
-  parallelFor(octree.cellCount(), kCellsPerTask, [&](std::size_t begin, std::size_t end) {
-    std::optional<ScalarGrid::Leaf> leaf;
-    Index3 current(1, 1, 1);  // no leaf has this origin
-    for (std::size_t c = begin; c < end; ++c) {
-      if (octree.levels[c] != 0) continue;
-      const Index3 voxel = octree.lowest(c);
-      if (leafOrigin(voxel) != current) {
-        current = leafOrigin(voxel);
-        const std::optional<std::size_t> found = grid.findLeaf(current);
-        leaf = found ? std::optional(grid.leaf(*found)) : std::nullopt;
+  // Cells wider than a leaf, and what a leaf adds to them.
+  std::vector<std::vector<std::pair<std::size_t, float>>> wide(chunkCount(grid.leafCount(), kLeavesPerTask));
+  parallelFor(grid.leafCount(), kLeavesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const ScalarGrid::Leaf leaf = grid.leaf(i);
+      if (!octree.contains(leaf.origin)) continue;
+      // A leaf is one aligned cube in Morton order: inside one cell, or a run of consecutive cells.
+      std::size_t cell = *octree.find(leaf.origin);
+      if (octree.levels[cell] > 3) {
+        wide[begin / kLeavesPerTask].emplace_back(cell, meanFrom(leaf, Index3::Zero(), 8, threshold));
+        continue;
       }
-      const Index3 local = voxel - current;
-      values[c] = leaf ? leaf->at(local.x(), local.y(), local.z()) : grid.background();
+      const std::uint64_t last = mortonCode(leaf.origin - octree.origin) + ScalarGrid::kLeafSize;
+      for (; cell < octree.cellCount() && octree.codes[cell] < last; ++cell) {
+        const Index3 low = octree.lowest(cell) - leaf.origin;
+        values[cell] = octree.levels[cell] == 0 ? leaf.at(low.x(), low.y(), low.z())
+                                                : meanFrom(leaf, low, octree.side(cell), threshold);
+      }
     }
   });
+  for (const auto& part : wide) {
+    for (const auto& [cell, mean] : part)
+      values[cell] += mean / static_cast<float>(std::size_t{1} << 3 * (octree.levels[cell] - 3));
+  }
   return values;
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "octree/morton.h"
-
 #include "vdbfuse/octree/octree.h"
 
 namespace vdbfuse {
@@ -36,14 +34,5 @@ std::uint64_t mortonCode(const Index3& position) {
 }
 
 Index3 mortonPosition(std::uint64_t code) { return {gather(code), gather(code >> 1), gather(code >> 2)}; }
-
-void appendNeighbours(std::uint64_t code, int axis, int side, std::vector<std::uint64_t>& out) {
-  const Index3 position = mortonPosition(code);
-  for (int step = -1; step <= 1; ++step) {
-    Index3 neighbour = position;
-    neighbour[axis] += step;
-    if (neighbour[axis] >= 0 && neighbour[axis] < side) out.push_back(mortonCode(neighbour));
-  }
-}
 
 }  // namespace vdbfuse

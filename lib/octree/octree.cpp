@@ -7,40 +7,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "octree/morton.h"
+#include "octree/cell_set.h"
+#include "octree/local_maximum.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
-
-using Codes = std::vector<std::uint64_t>;
-
-void sortUnique(Codes& codes) {
-  tbb::parallel_sort(codes.begin(), codes.end());
-  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
-}
-
-Codes parents(const Codes& codes) {
-  Codes result;
-  for (const std::uint64_t code : codes) {
-    if (result.empty() || result.back() != code >> 3) result.push_back(code >> 3);
-  }
-  return result;
-}
-
-// All cells within one step of the given ones, corners included; `size` in cells of that level.
-Codes dilated(const Codes& codes, const Index3& size) {
-  Codes result = codes;
-  for (int axis = 0; axis < 3; ++axis) {
-    Codes next;
-    next.reserve(3 * result.size());
-    for (const std::uint64_t code : result) appendNeighbours(code, axis, size[axis], next);
-    sortUnique(next);
-    result = std::move(next);
-  }
-  return result;
-}
 
 Octree emptyOctree(const GridFrame& frame, const Box& domain, int max_level) {
   if (domain.isEmpty()) throw InvalidArgument("domain", "the box is empty");
@@ -68,44 +41,73 @@ Octree emptyOctree(const GridFrame& frame, const Box& domain, int max_level) {
   return octree;
 }
 
-Codes supportedVoxels(const ScalarGrid& support, float threshold, const Octree& octree) {
-  Codes codes;
+// Voxels that ask for finest cells.
+CellSet supportedVoxels(const ScalarGrid& support, float threshold, const OctreeOptions& options,
+                        const Octree& octree) {
+  const bool only_ridges = options.ridge_radius > 0;
+  const std::optional<ScalarGrid> peaks =
+      only_ridges ? std::optional(localMaximum(support, options.ridge_radius)) : std::nullopt;
+  constexpr int kTilesPerSide = ScalarGrid::kLeafSide / lattice::kSide;
+  std::vector<CellWord> words;
   for (std::size_t i = 0; i < support.leafCount(); ++i) {
     const ScalarGrid::Leaf leaf = support.leaf(i);
+    if (!octree.contains(leaf.origin)) continue;  // leaves lie inside or outside as a whole
+    std::array<std::uint64_t, kTilesPerSide * kTilesPerSide * kTilesPerSide> cells{};
     for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
-      if (!(leaf.values[static_cast<std::size_t>(k)] >= threshold)) continue;
-      const Index3 voxel = leaf.origin + leafOffset(k);
-      if (octree.contains(voxel)) codes.push_back(mortonCode(voxel - octree.origin));
+      const float value = leaf.values[static_cast<std::size_t>(k)];
+      if (!(value >= threshold)) continue;
+      if (peaks && value < options.ridge_share * peaks->leaf(i).values[static_cast<std::size_t>(k)]) continue;
+      const std::uint64_t code = mortonCode(leafOffset(k));
+      cells[code >> 6] |= std::uint64_t{1} << slotOf(code);
     }
+    const std::uint64_t first = mortonCode(leaf.origin - octree.origin) >> 6;
+    for (std::uint64_t t = 0; t < cells.size(); ++t) words.push_back({first + t, cells[t]});
   }
-  sortUnique(codes);
-  return codes;
+  return cellSet(std::move(words));
 }
 
-// Codes of all children of `refined` that are not in `below` (the cells of the children's level that are
-// refined themselves): the leaf cells of that level.
-void appendLeafCells(const Codes& refined, const Codes& below, int level,
-                     std::vector<std::pair<std::uint64_t, std::uint8_t>>& out) {
-  auto next = below.begin();
-  for (const std::uint64_t parent : refined) {
-    for (std::uint64_t child = parent << 3; child < (parent + 1) << 3; ++child) {
-      while (next != below.end() && *next < child) ++next;
-      if (next != below.end() && *next == child) continue;
-      out.emplace_back(child << (3 * level), static_cast<std::uint8_t>(level));
-    }
+// Cells of every level, finest first, in one list in Morton order.
+void mergeLevels(const std::vector<CellSet>& cells, Octree& octree) {
+  std::size_t total = 0;
+  for (const CellSet& set : cells) total += cellCount(set);
+  octree.codes.clear(), octree.levels.clear();
+  octree.codes.reserve(total), octree.levels.reserve(total);
+  // Coarse cells are few: each is followed by the run of finer ones up to the next.
+  std::vector<std::pair<std::uint64_t, std::uint8_t>> coarse;
+  for (std::size_t level = 1; level < cells.size(); ++level) {
+    forEachCell(cells[level], [&](std::uint64_t code) {
+      coarse.emplace_back(code << 3 * level, static_cast<std::uint8_t>(level));
+    });
   }
+  tbb::parallel_sort(coarse.begin(), coarse.end());
+  auto next = coarse.begin();
+  const auto put = [&](std::uint64_t code, std::uint8_t level) {
+    octree.codes.push_back(code), octree.levels.push_back(level);
+  };
+  forEachCell(cells.front(), [&](std::uint64_t code) {
+    for (; next != coarse.end() && next->first < code; ++next) put(next->first, next->second);
+    put(code, 0);
+  });
+  for (; next != coarse.end(); ++next) put(next->first, next->second);
 }
 
-Codes coarsestCells(const Octree& octree) {
-  Codes codes;
-  const Index3 count = octree.size / (1 << octree.max_level);
-  for (int x = 0; x < count.x(); ++x) {
-    for (int y = 0; y < count.y(); ++y) {
-      for (int z = 0; z < count.z(); ++z) codes.push_back(mortonCode({x, y, z}));
-    }
+Index3 sizeAt(const Octree& octree, std::size_t level) { return octree.size / (1 << level); }
+
+// Cells from what is to be divided: wanted[l] are cells of level l. Grading: the parents of all neighbours of
+// a divided cell are divided too, hence those neighbours exist and differ by one level at the most.
+void divide(const std::vector<CellSet>& wanted, Octree& octree) {
+  std::vector<CellSet> divided(wanted.size());
+  for (std::size_t level = 1; level < wanted.size(); ++level) {
+    divided[level] = wanted[level];
+    if (level > 1)
+      divided[level] =
+          united(divided[level], parents(dilated(divided[level - 1], sizeAt(octree, level - 1))));
   }
-  sortUnique(codes);
-  return codes;
+  std::vector<CellSet> cells(wanted.size());
+  for (std::size_t level = 0; level + 1 < wanted.size(); ++level)
+    cells[level] = without(children(divided[level + 1]), divided[level]);
+  cells.back() = without(allCells(sizeAt(octree, wanted.size() - 1)), divided.back());
+  mergeLevels(cells, octree);
 }
 
 }  // namespace
@@ -124,30 +126,33 @@ std::optional<std::size_t> Octree::find(const Index3& voxel) const {
 Octree buildOctree(const ScalarGrid& support, float threshold, const Box& domain,
                    const OctreeOptions& options) {
   Octree octree = emptyOctree(support.frame(), domain, options.max_level);
-  // refined[l]: cells of level l that are divided. Grading: the parents of all neighbours of a divided cell
-  // are divided too, hence those neighbours exist and differ by one level at the most.
-  std::vector<Codes> refined(static_cast<std::size_t>(octree.max_level) + 1);
-  Codes below = supportedVoxels(support, threshold, octree);
-  for (std::size_t level = 1; level < refined.size(); ++level) {
-    const Index3 size = octree.size / (1 << (level - (level > 1)));
-    refined[level] =
-        level == 1 ? dilated(parents(below), octree.size / 2) : parents(dilated(refined[level - 1], size));
-  }
-  std::vector<std::pair<std::uint64_t, std::uint8_t>> cells;
-  for (std::size_t level = 1; level < refined.size(); ++level) {
-    appendLeafCells(refined[level], refined[level - 1], static_cast<int>(level) - 1, cells);
-  }
-  for (const std::uint64_t code : coarsestCells(octree)) {
-    const bool divided =
-        octree.max_level > 0 && std::binary_search(refined.back().begin(), refined.back().end(), code);
-    if (!divided)
-      cells.emplace_back(code << (3 * octree.max_level), static_cast<std::uint8_t>(octree.max_level));
-  }
-  tbb::parallel_sort(cells.begin(), cells.end());
-  octree.codes.reserve(cells.size());
-  octree.levels.reserve(cells.size());
-  for (const auto& [code, level] : cells) octree.codes.push_back(code), octree.levels.push_back(level);
+  std::vector<CellSet> wanted(static_cast<std::size_t>(octree.max_level) + 1);
+  if (octree.max_level > 0)
+    wanted[1] = dilated(parents(supportedVoxels(support, threshold, options, octree)), sizeAt(octree, 1));
+  divide(wanted, octree);
   return octree;
+}
+
+Octree refined(const Octree& octree, const std::vector<std::size_t>& cells) {
+  const std::size_t levels = static_cast<std::size_t>(octree.max_level) + 1;
+  std::vector<std::vector<std::uint64_t>> leaves(levels), split(levels);
+  for (std::size_t c = 0; c < octree.cellCount(); ++c)
+    leaves[octree.levels[c]].push_back(octree.codes[c] >> 3 * octree.levels[c]);
+  for (const std::size_t c : cells) {
+    if (octree.levels[c] > 0) split[octree.levels[c]].push_back(octree.codes[c] >> 3 * octree.levels[c]);
+  }
+  std::vector<CellSet> wanted(levels);
+  for (std::size_t level = 1; level < levels; ++level) {
+    wanted[level] = united(parents(cellSet(leaves[level - 1])), parents(wanted[level - 1]));
+    leaves[level - 1] = {};
+  }
+  for (std::size_t level = 1; level < levels; ++level)
+    wanted[level] = united(wanted[level], cellSet(split[level]));
+  Octree result;
+  result.frame = octree.frame, result.origin = octree.origin, result.size = octree.size;
+  result.max_level = octree.max_level;
+  divide(wanted, result);
+  return result;
 }
 
 std::vector<std::size_t> cellsByLevel(const Octree& octree) {

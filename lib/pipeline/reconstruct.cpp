@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/cells.h"
 #include "pipeline/steps.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/fusion/agreement.h"
@@ -22,29 +23,30 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   ScalarGrid support = countAgreement(judged, frame, domain, progress);  // C(x), eq. (3)
 
   timer.start("octree");
-  const Octree octree = buildOctree(support, kSupported, domain, {options.max_level});
-  const CellTiles tiles = tileCells(octree);
-  const std::vector<CellFace> faces = cellFaces(tiles);
+  Octree octree = buildOctree(support, kSupported, domain, octreeOptions(frame, result.calibration, options));
 
   timer.start("evidence");
   const EvidenceOptions evidence_options = evidenceOptions(domain, options);
-  std::vector<float> sigma = evidence(judged, octree, evidence_options, progress);  // σ(x)
+  const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
+  const CellsWithEvidence cells =
+      evaluateFromCoarseToFine(judged, support, std::move(octree), evidence_options,
+                               {cut_options.lambda, cut_options.max_evidence}, progress);  // σ(x)
 
   timer.start("cut");
-  const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
   Labelling cut =
-      cutCells(octree, tiles, sampleFinest(octree, support), sigma, cut_options, progress);  // (1)
+      cutCells(cells.octree, cells.tiles, cells.support, cells.sigma, cut_options, progress);  // (1)
   const CavityReport cavities =
-      fillUnseenCavities(octree, faces, sensorPositions(judged), cut_options.border, cut.labels);
+      fillUnseenCavities(cells.octree, cells.tiles, sensorPositions(judged), cut_options.border, cut.labels);
 
   timer.start("surface");
   const CellLabel beyond = cut_options.border == Border::Solid ? CellLabel::Inside : CellLabel::Outside;
   const FieldOptions field_options{options.smoothing_voxels, kSupported, beyond};
-  ScalarGrid field = signedField(judged, octree, faces, cut.labels, support, field_options, progress);
+  ScalarGrid field =
+      signedField(judged, cells.octree, cells.tiles, cut.labels, support, field_options, progress);
   result.mesh = extractSurface(field, progress);
   describeVertices(support, result);
 
-  result.grid = describeGrid(octree, support, domain);
+  result.grid = describeGrid(cells.octree, support, domain);
   result.cut = CutReportSummary{cut.flow,
                                 cut.certified,
                                 cut.nodes,
@@ -55,7 +57,7 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
                                 cut_options.border,
                                 cavities};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
-  result.grids = levelGrids(octree, sigma, "sigma", static_cast<float>(options.evidence.prior));
+  result.grids = levelGrids(cells.octree, cells.sigma, "sigma", static_cast<float>(options.evidence.prior));
   result.grids.push_back(discontinuityCost(support, options.mu));
   result.grids.push_back(std::move(support));
   result.grids.push_back(std::move(field));

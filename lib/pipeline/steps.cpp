@@ -134,6 +134,19 @@ GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
   return {std::max({calibration.point_spacing, calibration.noise_scale, longest / kDefaultLongestSide})};
 }
 
+OctreeOptions octreeOptions(const GridFrame& frame, const CalibrationReport& calibration,
+                            const ReconstructOptions& options) {
+  constexpr double kRidgeRadius = 2.0;  // widths of the noise: where C has fallen to 2 % of its ridge
+  constexpr int kLargestRadius = 8;
+  OctreeOptions octree;
+  octree.max_level = options.max_level;
+  if (calibration.noise_scale > frame.voxel) {
+    octree.ridge_radius = static_cast<int>(
+        std::min<double>(kLargestRadius, std::ceil(kRidgeRadius * calibration.noise_scale / frame.voxel)));
+  }
+  return octree;
+}
+
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
                       const CalibrationReport& calibration, const ReconstructOptions& options) {
   CutOptions cut;

@@ -30,6 +30,9 @@ void useDomain(const Box& domain, Judgement& judgement);
 GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
                       const ReconstructOptions& options);
 
+OctreeOptions octreeOptions(const GridFrame& frame, const CalibrationReport& calibration,
+                            const ReconstructOptions& options);
+
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
                       const CalibrationReport& calibration, const ReconstructOptions& options);
 

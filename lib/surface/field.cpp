@@ -141,8 +141,9 @@ std::vector<MeasuredVoxel> startLeaf(const ScalarGrid& labels, const ScalarGrid&
     const bool is_near = isNearBoundary(near, v);
     out.values[static_cast<std::size_t>(i)] =
         towards(label, (is_near ? 0.5f : static_cast<float>(kCutOff)) * voxel);
-    if (is_near && found && support.leaf(*found).values[static_cast<std::size_t>(i)] >= options.supported)
-      measured.push_back({i, label, {}});
+    const float agreement =
+        found ? support.leaf(*found).values[static_cast<std::size_t>(i)] : support.background();
+    if (is_near && agreement >= options.supported) measured.push_back({i, label, {}});
   }
   return measured;
 }
@@ -249,10 +250,10 @@ void smoothLeaf(const ScalarGrid& field, const ScalarGrid& labels, const std::ar
 
 }  // namespace
 
-ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const std::vector<CellFace>& faces,
+ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const CellTiles& tiles,
                        const std::vector<CellLabel>& labels, const ScalarGrid& support,
                        const FieldOptions& options, const Progress& progress) {
-  const std::vector<Index3> blocks = boundaryBlocks(octree, faces, labels, options.beyond, kReach);
+  const std::vector<Index3> blocks = boundaryBlocks(octree, tiles, labels, options.beyond, kReach);
   const ScalarGrid sides = labelGrid(octree, labels, options.beyond, blocks);
   ScalarGrid measured("surface", octree.frame, kUnknown, blocks);
   ProgressStep step(progress, "place surface", measured.leafCount());

@@ -9,7 +9,7 @@
 namespace vdbfuse {
 namespace {
 
-constexpr std::size_t kFacesPerTask = 1 << 16;
+constexpr std::size_t kTilesPerTask = 1024;
 
 // Blocks that meet the voxels low … high.
 void appendBlocks(const Index3& low, const Index3& high, std::vector<Index3>& out) {
@@ -41,19 +41,20 @@ void appendBorder(const Octree& octree, std::size_t cell, int reach, std::vector
 
 }  // namespace
 
-std::vector<Index3> boundaryBlocks(const Octree& octree, const std::vector<CellFace>& faces,
+std::vector<Index3> boundaryBlocks(const Octree& octree, const CellTiles& tiles,
                                    const std::vector<CellLabel>& labels, CellLabel beyond, int reach) {
-  std::vector<std::vector<Index3>> parts(chunkCount(faces.size(), kFacesPerTask));
-  parallelFor(faces.size(), kFacesPerTask, [&](std::size_t begin, std::size_t end) {
-    std::vector<Index3>& part = parts[begin / kFacesPerTask];
-    for (std::size_t i = begin; i < end; ++i) {
-      const CellFace& face = faces[i];
-      if (labels[face.first] == labels[face.second]) continue;
-      appendFace(octree, face.first, face.axis, face.direction, reach, part);
-    }
+  const auto append = [&](const CellFace& face, std::vector<Index3>& out) {
+    if (labels[face.first] != labels[face.second])
+      appendFace(octree, face.first, face.axis, face.direction, reach, out);
+  };
+  std::vector<std::vector<Index3>> parts(chunkCount(tiles.count(), kTilesPerTask));
+  parallelFor(tiles.count(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<Index3>& part = parts[begin / kTilesPerTask];
+    forEachEqualFace(tiles, begin, end, [&](const CellFace& face) { append(face, part); });
     sortUniqueOrigins(part);
   });
   std::vector<Index3> all;
+  for (const CellTransition& t : tiles.transitions) append(faceOf(tiles, t.fine, t.coarse, t.direction), all);
   for (std::size_t c = 0; c < labels.size(); ++c) {
     if (labels[c] != beyond) appendBorder(octree, c, reach, all);
   }

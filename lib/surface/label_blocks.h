@@ -10,7 +10,7 @@ namespace vdbfuse {
 
 /// Origins of all 8³ blocks that hold a voxel within `reach` voxels of a face between different labels (or of
 /// a face of the domain's border whose inner side differs from `beyond`). Sorted.
-std::vector<Index3> boundaryBlocks(const Octree& octree, const std::vector<CellFace>& faces,
+std::vector<Index3> boundaryBlocks(const Octree& octree, const CellTiles& tiles,
                                    const std::vector<CellLabel>& labels, CellLabel beyond, int reach);
 
 /// Labels of one block's voxels in the order of ScalarGrid::Leaf.

@@ -39,13 +39,13 @@ TEST(CellFaces, AreThoseBetweenTheVoxelsOfDifferentCells) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Octree octree = randomOctree(seed, 24, 3).octree;
     std::map<std::tuple<std::size_t, std::size_t, int>, int> found;
-    for (const CellFace& face : cellFaces(octree)) {
+    forEachFace(tileCells(octree), [&](const CellFace& face) {
       EXPECT_LE(octree.levels[face.first], octree.levels[face.second]);
-      const auto [low, high] =
-          face.direction > 0 ? std::pair{face.first, face.second} : std::pair{face.second, face.first};
+      const std::size_t low = face.direction > 0 ? face.first : face.second,
+                        high = face.direction > 0 ? face.second : face.first;
       const bool is_new = found.emplace(std::tuple{low, high, face.axis}, face.area).second;
       EXPECT_TRUE(is_new);
-    }
+    });
     EXPECT_EQ(found, facesByBruteForce(octree)) << seed;
   }
 }
@@ -53,8 +53,9 @@ TEST(CellFaces, AreThoseBetweenTheVoxelsOfDifferentCells) {
 TEST(CellFaces, CoverAllSixSidesOfEveryCellThatDoesNotLieOnTheBorder) {
   const Octree octree = randomOctree(5, 40, 3).octree;
   std::vector<int> area(octree.cellCount(), 0);
-  for (const CellFace& face : cellFaces(octree))
-    area[face.first] += face.area, area[face.second] += face.area;
+  forEachFace(tileCells(octree), [&](const CellFace& face) {
+    area[face.first] += static_cast<int>(face.area), area[face.second] += static_cast<int>(face.area);
+  });
   std::size_t inner = 0;
   for (std::size_t c = 0; c < octree.cellCount(); ++c) {
     const Index3 low = octree.lowest(c) - octree.origin, high = low.array() + octree.side(c);
@@ -263,12 +264,12 @@ TEST(CutCells, NegativeWeightsAreRefused) {
 // A solid shell around a hollow of the cell in the middle of a uniform grid of 5³ finest cells.
 struct Shell {
   Octree octree;
-  std::vector<CellFace> faces;
+  CellTiles tiles;
   std::vector<CellLabel> labels;
   Shell() {
     octree.frame.voxel = 0.5, octree.size = {8, 8, 8}, octree.max_level = 0;
     for (std::uint64_t code = 0; code < 512; ++code) octree.codes.push_back(code), octree.levels.push_back(0);
-    faces = cellFaces(octree);
+    tiles = tileCells(octree);
     labels.assign(512, CellLabel::Outside);
     for (int i = 0; i < 27; ++i) at({2 + i % 3, 2 + i / 3 % 3, 2 + i / 9}) = CellLabel::Inside;
     at(kHollow) = CellLabel::Outside;
@@ -283,7 +284,7 @@ struct Shell {
 TEST(FillUnseenCavities, AHollowThatNoSensorIsInIsFilledAndMeasured) {
   Shell shell;
   const CavityReport report =
-      fillUnseenCavities(shell.octree, shell.faces, {{100, 0, 0}}, Border::Outside, shell.labels);
+      fillUnseenCavities(shell.octree, shell.tiles, {{100, 0, 0}}, Border::Outside, shell.labels);
   EXPECT_EQ(report.filled, 1u);
   EXPECT_DOUBLE_EQ(report.volume, 0.125);
   EXPECT_EQ(shell.solid(), 27u);
@@ -292,7 +293,7 @@ TEST(FillUnseenCavities, AHollowThatNoSensorIsInIsFilledAndMeasured) {
 TEST(FillUnseenCavities, AHollowWithASensorInItStays) {
   Shell shell;
   const Eigen::Vector3d sensor = shell.octree.frame.toWorld(Shell::kHollow) + Eigen::Vector3d(0.1, -0.1, 0.2);
-  EXPECT_EQ(fillUnseenCavities(shell.octree, shell.faces, {sensor}, Border::Outside, shell.labels).filled,
+  EXPECT_EQ(fillUnseenCavities(shell.octree, shell.tiles, {sensor}, Border::Outside, shell.labels).filled,
             0u);
   EXPECT_EQ(shell.solid(), 26u);
 }
@@ -300,32 +301,46 @@ TEST(FillUnseenCavities, AHollowWithASensorInItStays) {
 TEST(FillUnseenCavities, AHollowThatIsOpenToTheBorderStays) {
   Shell shell;
   shell.at({3, 3, 4}) = CellLabel::Outside;
-  EXPECT_EQ(fillUnseenCavities(shell.octree, shell.faces, {}, Border::Outside, shell.labels).filled, 0u);
+  EXPECT_EQ(fillUnseenCavities(shell.octree, shell.tiles, {}, Border::Outside, shell.labels).filled, 0u);
 }
 
 TEST(FillUnseenCavities, InARoomOnlyWhatASensorSeesIsEmpty) {
   Shell shell;
   const Eigen::Vector3d inside = shell.octree.frame.toWorld(Shell::kHollow);
   const CavityReport report =
-      fillUnseenCavities(shell.octree, shell.faces, {inside}, Border::Solid, shell.labels);
+      fillUnseenCavities(shell.octree, shell.tiles, {inside}, Border::Solid, shell.labels);
   EXPECT_EQ(report.filled, 1u);
   EXPECT_EQ(shell.solid(), 511u);
   // With no sensor inside the domain nothing can be told from the room outside.
   Shell other;
-  EXPECT_EQ(fillUnseenCavities(other.octree, other.faces, {{100, 0, 0}}, Border::Solid, other.labels).filled,
+  EXPECT_EQ(fillUnseenCavities(other.octree, other.tiles, {{100, 0, 0}}, Border::Solid, other.labels).filled,
             1u);
   EXPECT_EQ(other.solid(), 27u);
 }
 
-TEST(SampleFinest, TakesTheVoxelOfFinestCellsAndZeroElsewhere) {
-  const test::RandomOctree random = randomOctree(4);
-  const Octree& octree = random.octree;
-  const std::vector<float> values = sampleFinest(octree, supportAt(random.voxels));
-  for (std::size_t c = 0; c < octree.cellCount(); ++c) {
-    const bool supported =
-        octree.levels[c] == 0 && std::any_of(random.voxels.begin(), random.voxels.end(),
-                                             [&](const Index3& v) { return v == octree.lowest(c); });
-    EXPECT_EQ(values[c], supported ? 1.0f : 0.0f);
+TEST(SampleCells, IsTheMeanOverTheVoxelsOfACellOfWhatReachesTheThreshold) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Octree octree = randomOctree(seed, 40, 4).octree;
+    // Voxels that the octree did not ask for, in cells of all sizes; one below the threshold.
+    Random random(seed, 7);
+    std::vector<Index3> voxels;
+    for (int i = 0; i < 60; ++i) {
+      Index3 v;
+      for (int a = 0; a < 3; ++a)
+        v[a] = octree.origin[a] + static_cast<int>(random.below(static_cast<std::uint64_t>(octree.size[a])));
+      voxels.push_back(v);
+    }
+    const ScalarGrid grid = supportAt(voxels, octree.frame);
+    const Index3 low = voxels.front() - leafOrigin(voxels.front());
+    grid.leaf(*grid.findLeaf(leafOrigin(voxels.front()))).at(low.x(), low.y(), low.z()) = 0.25f;
+    std::vector<double> expected(octree.cellCount(), 0.0);
+    forEachVoxel(octree, [&](const Index3& v) {
+      const std::size_t c = *octree.find(v);
+      const float value = grid.at(v);
+      if (octree.levels[c] == 0 || value >= 0.5f) expected[c] += value / std::pow(octree.side(c), 3);
+    });
+    const std::vector<float> values = sampleCells(octree, grid, 0.5f);
+    for (std::size_t c = 0; c < octree.cellCount(); ++c) EXPECT_NEAR(values[c], expected[c], 1e-6) << seed;
   }
 }
 

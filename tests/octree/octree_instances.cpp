@@ -78,7 +78,7 @@ OctreeInstance octreeInstance(OctreeFamily family, int resolution, std::uint64_t
   const Eigen::Vector3d corner = Eigen::Vector3d::Constant(0.5 - voxel);
   instance.octree = buildOctree(support, 0.1f, Box(-corner, corner));
   instance.tiles = tileCells(instance.octree);
-  instance.support = sampleFinest(instance.octree, support);
+  instance.support = sampleCells(instance.octree, support, 0.3f);
   Random random(seed, 1u << 30);
   for (std::size_t c = 0; c < instance.octree.cellCount(); ++c) {
     const Eigen::Vector3d middle =

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "octree/random_octree.h"
@@ -113,6 +114,57 @@ TEST(Octree, VoxelsOutsideTheDomainOrBelowTheThresholdAreIgnored) {
   EXPECT_EQ(cellsByLevel(below)[0], 0u);
   const Octree at = buildOctree(supportAt({{10, 10, 10}}), 1.0f, domain, {3});
   EXPECT_GT(cellsByLevel(at)[0], 0u);
+}
+
+TEST(Octree, OnlyTheRidgeIsFinestWhereAsked) {
+  // A sheet x = 20 whose support falls off over many voxels, beside a weaker one far away.
+  std::vector<Index3> voxels;
+  for (int x = 0; x < 64; ++x)
+    for (int y = 0; y < 64; ++y)
+      for (int z = 0; z < 64; ++z) voxels.emplace_back(x, y, z);
+  const ScalarGrid support = supportAt(voxels);
+  support.forEachLeaf([](const ScalarGrid::Leaf& leaf) {
+    for (int x = 0; x < 8; ++x) {
+      const double strong = 12 * std::exp(-std::pow((leaf.origin.x() + x - 20) / 4.0, 2));
+      const double weak = 0.8 * std::exp(-std::pow((leaf.origin.x() + x - 50) / 4.0, 2));
+      for (int k = 0; k < 64; ++k) leaf.at(x, k / 8, k % 8) = static_cast<float>(strong + weak);
+    }
+  });
+  const Box domain(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(63, 63, 63));
+  const auto level = [&](const Octree& octree, int x) {
+    return static_cast<int>(octree.levels[*octree.find({x, 30, 30})]);
+  };
+  const Octree all = buildOctree(support, 0.3f, domain, {4});
+  const Octree ridge = buildOctree(support, 0.3f, domain, {4, 8, 0.5f});
+  for (const int x : {12, 28}) EXPECT_EQ(level(all, x), 0);
+  for (const int x : {17, 20, 23, 47, 50, 53}) EXPECT_EQ(level(ridge, x), 0) << x;
+  for (const int x : {12, 28, 40, 60}) EXPECT_GT(level(ridge, x), 0) << x;
+  EXPECT_LT(cellsByLevel(ridge)[0], 0.8 * static_cast<double>(cellsByLevel(all)[0]));
+}
+
+TEST(Octree, RefinedDividesTheCellsAskedForAndStaysGraded) {
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Octree octree = randomOctree(static_cast<std::uint64_t>(seed), 40, 4).octree;
+    Random random(static_cast<std::uint64_t>(seed), 3);
+    std::vector<std::size_t> asked;
+    for (int i = 0; i < 5; ++i) asked.push_back(random.below(octree.cellCount()));
+    const Octree finer = refined(octree, asked);
+    std::vector<int> finest(octree.cellCount(), 64);
+    forEachVoxel(octree, [&](const Index3& v) {
+      const std::size_t old = *octree.find(v), cell = *finer.find(v);
+      ASSERT_LE(finer.levels[cell], octree.levels[old]) << seed;
+      finest[old] = std::min<int>(finest[old], finer.levels[cell]);
+      for (int n = 0; n < 27; ++n) {
+        const auto other = finer.find(v + Index3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1));
+        if (other) {
+          ASSERT_LE(std::abs(finer.levels[*other] - finer.levels[cell]), 1) << seed;
+        }
+      }
+    });
+    for (const std::size_t c : asked) EXPECT_EQ(finest[c]<octree.levels[c], octree.levels[c]> 0) << seed;
+    EXPECT_EQ(refined(finer, {}).codes, finer.codes);
+    EXPECT_EQ(refined(finer, {}).levels, finer.levels);
+  }
 }
 
 TEST(Octree, DomainsThatCannotBeAreRefused) {

@@ -46,7 +46,7 @@ TEST(BoundaryBlocks, HoldEveryVoxelWithinReachOfAnotherLabel) {
     const std::vector<CellLabel> labels = randomLabels(octree, seed, 0.1);
     const LabelReader reader(octree, labels, CellLabel::Outside);
     const std::vector<Index3> blocks =
-        boundaryBlocks(octree, cellFaces(octree), labels, CellLabel::Outside, kReach);
+        boundaryBlocks(octree, tileCells(octree), labels, CellLabel::Outside, kReach);
     const ScalarGrid grid("blocks", GridFrame{1.0}, 0.0f, blocks);
     EXPECT_EQ(grid.leafCount(), blocks.size());
     test::forEachVoxel(octree, [&](const Index3& v) {
@@ -69,7 +69,7 @@ TEST_P(SignedField, ItsSignIsTheLabelOfEveryVoxelAndTheSurfaceIsClosed) {
     const test::RandomOctree random = randomOctree(seed, 24, 3);
     const std::vector<CellLabel> labels = randomLabels(random.octree, seed, 0.3);
     for (const CellLabel beyond : {CellLabel::Outside, CellLabel::Inside}) {
-      const ScalarGrid field = signedField({}, random.octree, cellFaces(random.octree), labels,
+      const ScalarGrid field = signedField({}, random.octree, tileCells(random.octree), labels,
                                            supportAt(random.voxels), {GetParam(), 0.3f, beyond});
       const LabelReader reader(random.octree, labels, beyond);
       for (std::size_t i = 0; i < field.leafCount(); ++i) {
@@ -108,7 +108,7 @@ struct Plane {
       labels.push_back(octree.lowest(c).z() >= wall ? CellLabel::Inside : CellLabel::Outside);
   }
   ScalarGrid field(double smoothing) const {
-    return signedField(judged, octree, cellFaces(octree), labels, support,
+    return signedField(judged, octree, tileCells(octree), labels, support,
                        {smoothing, 0.3f, CellLabel::Outside});
   }
 };

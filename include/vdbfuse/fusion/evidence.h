@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vdbfuse/base/progress.h"
-#include "vdbfuse/octree/octree.h"
+#include "vdbfuse/octree/divide.h"
 #include "vdbfuse/sensor/judged_view.h"
 
 namespace vdbfuse {
@@ -71,5 +71,9 @@ std::vector<float> evidenceAt(const JudgedViews& judged, const std::vector<Eigen
 /// one.
 std::vector<float> evidence(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
                             const Progress& progress = {});
+
+/// The same for the cells whose mean is not a number yet, and the weakest of their samples.
+void evaluateCells(const JudgedViews& judged, const Octree& octree, const EvidenceOptions& options,
+                   CellEvidence& evidence, const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "vdbfuse/base/progress.h"
-#include "vdbfuse/octree/cell_tiles.h"
+#include "vdbfuse/octree/cell_faces.h"
 #include "vdbfuse/octree/octree.h"
 
 namespace vdbfuse {
@@ -20,18 +20,6 @@ enum class Border {
   Solid,    ///< matter: a room seen from within
   Free,     ///< nothing is said
 };
-
-/// Two cells that share a face; `area` in finest faces h². cells.first is never the larger one.
-struct CellFace {
-  std::uint32_t first = 0, second = 0;
-  std::uint8_t axis = 0;
-  std::int8_t direction = 1;  ///< from first to second along the axis
-  std::uint16_t area = 1;
-};
-
-/// All pairs of cells that share a face, each once, in an order that does not depend on threads.
-std::vector<CellFace> cellFaces(const CellTiles& tiles);
-std::vector<CellFace> cellFaces(const Octree& octree);
 
 struct CutOptions {
   double mu = 2.0;      ///< ρ = e^(−μ C): where two reliable views agree a surface costs next to nothing
@@ -74,11 +62,12 @@ struct CavityReport {
 
 /// Turns empty components that no sensor can see into solid: those that hold no sensor and do not reach the
 /// border (which is open unless it is solid and some sensor lies inside the domain).
-CavityReport fillUnseenCavities(const Octree& octree, const std::vector<CellFace>& faces,
+CavityReport fillUnseenCavities(const Octree& octree, const CellTiles& tiles,
                                 const std::vector<Eigen::Vector3d>& sensors, Border border,
                                 std::vector<CellLabel>& labels);
 
-/// Value of a finest grid at each cell: the voxel's own at a finest cell, 0 in coarser ones.
-std::vector<float> sampleFinest(const Octree& octree, const ScalarGrid& grid);
+/// Value of a finest grid at each cell: the voxel's own at a finest cell, in coarser ones the mean of what
+/// reaches `threshold` over all of their voxels, the others being 0.
+std::vector<float> sampleCells(const Octree& octree, const ScalarGrid& grid, float threshold);
 
 }  // namespace vdbfuse

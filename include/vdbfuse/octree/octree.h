@@ -44,6 +44,11 @@ struct Octree {
 struct OctreeOptions {
   /// Coarsest cells are 2^max_level finest voxels wide. 6 keeps 15 bits for the capacities of the cut.
   int max_level = 6;
+  /// Where C is smooth over many voxels, because the noise is wider than they are, only its ridge needs
+  /// finest cells: those that hold `ridge_share` of the largest value within this many voxels along each axis
+  /// (0 … 8). 0: all that the threshold lets pass.
+  int ridge_radius = 0;
+  float ridge_share = 0.5f;
 };
 
 /// Finest cells wherever a voxel of `support` holds at least `threshold`, and for two voxels around; then
@@ -52,6 +57,9 @@ struct OctreeOptions {
 /// InvalidArgument when the domain is empty, longer than kMaxOctreeSide or 1e9 voxels away.
 Octree buildOctree(const ScalarGrid& support, float threshold, const Box& domain,
                    const OctreeOptions& options = {});
+
+/// The octree with these cells divided, and what grading asks for. Finest cells stay.
+Octree refined(const Octree& octree, const std::vector<std::size_t>& cells);
 
 /// Number of cells of each level, finest first.
 std::vector<std::size_t> cellsByLevel(const Octree& octree);

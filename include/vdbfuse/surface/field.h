@@ -24,7 +24,7 @@ struct FieldOptions {
 /// distance, > 0 outside, cut off at two voxels. Its sign equals the label of every voxel. Where `support`
 /// (C) holds, the distance is the mean of (D − d)·cos over the views that see this side of the surface,
 /// weighted by reliability, incidence and precision; elsewhere half a voxel to the label's side.
-ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const std::vector<CellFace>& faces,
+ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const CellTiles& tiles,
                        const std::vector<CellLabel>& labels, const ScalarGrid& support,
                        const FieldOptions& options = {}, const Progress& progress = {});
 
