@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/base/progress.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <ctime>
 
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/memory.h"
 
 namespace vdbfuse {
 namespace {
@@ -55,12 +54,6 @@ void StepTimer::close() {
   steps_.back().cpu_seconds = cpuSeconds() - cpu_start_;
   steps_.back().peak_memory_bytes = peakMemoryBytes();
   running_ = false;
-}
-
-std::size_t peakMemoryBytes() {
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace vdbfuse

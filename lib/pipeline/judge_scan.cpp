@@ -7,14 +7,18 @@ namespace vdbfuse {
 
 JudgedScan judgeScan(const ViewSequence& sequence, const ReconstructOptions& options,
                      const Progress& progress) {
+  return judgeScan(sequence, options, planJudging(sequence, options), progress);
+}
+
+JudgedScan judgeScan(const ViewSequence& sequence, const ReconstructOptions& options, ScanPlan plan,
+                     const Progress& progress) {
   requireUsable(sequence, options);
   JudgedScan scan;
+  scan.plan = std::move(plan);
   StepTimer timer;
 
   timer.start("load");
-  std::vector<View> views = loadViews(sequence, progress);
-  scan.width = static_cast<std::size_t>(views.front().map.depth.width());
-  scan.height = static_cast<std::size_t>(views.front().map.depth.height());
+  std::vector<View> views = loadViews(sequence, scan, progress);
 
   timer.start("calibrate");
   const DepthStatistics depths = depthStatistics(views, options.domain);

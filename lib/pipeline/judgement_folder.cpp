@@ -94,14 +94,19 @@ void writeJudgement(const fs::path& folder, const JudgedScan& scan, const Judgem
 }
 
 JudgedScan readJudgement(const fs::path& folder, const ViewSequence& sequence, const Progress& progress) {
+  return readJudgement(folder, sequence, planJudging(sequence), progress);
+}
+
+JudgedScan readJudgement(const fs::path& folder, const ViewSequence& sequence, ScanPlan plan,
+                         const Progress& progress) {
   ReadJudgement read = readJudgementJson(folder / kJson);
   requireSameViews(folder / kJson, read.views, sequence);
   JudgedScan scan;
   StepTimer timer;
   timer.start("load");
-  std::vector<View> views = loadViews(sequence, progress);
-  scan.width = static_cast<std::size_t>(views.front().map.depth.width());
-  scan.height = static_cast<std::size_t>(views.front().map.depth.height());
+  scan.plan = std::move(plan);
+  scan.plan.reduction.assign(sequence.size(), 1);  // pixels were judged as they are
+  std::vector<View> views = loadViews(sequence, scan, progress);
 
   timer.start("read judgement");
   std::vector<Image<float>> incidence(views.size());

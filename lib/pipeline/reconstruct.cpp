@@ -84,7 +84,13 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
 
 Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& options,
                            const Progress& progress) {
-  return reconstruct(judgeScan(views, options, progress), options, progress);
+  StepTimer timer;
+  timer.start("plan");
+  ScanPlan plan = planReconstruction(views, options, progress);
+  std::vector<StepTime> steps = timer.finish();
+  JudgedScan scan = judgeScan(views, options, std::move(plan), progress);
+  scan.steps.insert(scan.steps.begin(), steps.begin(), steps.end());
+  return reconstruct(std::move(scan), options, progress);
 }
 
 Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, const Progress& progress) {
@@ -92,6 +98,7 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
   Reconstruction result;
   StepTimer timer;
   result.width = scan.width, result.height = scan.height;
+  result.memory = {scan.plan.memory_budget, scan.plan.estimated_memory, scan.plan.window_bytes};
   result.calibration = scan.calibration;
   if (options.domain) useDomain(*options.domain, scan.judgement);
   scan.judgement.judged.sensor.prior_decay = options.prior_decay;

@@ -8,6 +8,7 @@
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/fusion/point_spacing.h"
+#include "vdbfuse/sensor/reduce.h"
 #include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
@@ -70,12 +71,18 @@ void requireUsable(const ViewSequence& views, const ReconstructOptions& options)
   if (views.empty()) throw InvalidArgument("views", "there are none");
 }
 
-std::vector<View> loadViews(const ViewSequence& sequence, const Progress& progress) {
+std::vector<View> loadViews(const ViewSequence& sequence, JudgedScan& scan, const Progress& progress) {
+  if (scan.plan.window_bytes > 0) scan.memory = std::make_shared<ScratchMemory>(scan.plan.window_bytes);
+  scan.width = static_cast<std::size_t>(imageWidth(sequence.header(0).projection));
+  scan.height = static_cast<std::size_t>(imageHeight(sequence.header(0).projection));
   std::vector<View> views(sequence.size());
   ProgressStep step(progress, "load views", sequence.size());
   parallelFor(sequence.size(), 1, [&](std::size_t i, std::size_t) {
-    views[i] = sequence.load(i);
-    views[i].map.color = {};
+    View view = sequence.load(i);
+    view.map.color = {};
+    if (view.map.alternatives.empty()) view = reduced(std::move(view), scan.plan.reduction[i]);
+    if (scan.memory) keepIn(scan.memory.get(), view), letGo(view);
+    views[i] = std::move(view);
     step.advance();
   });
   return views;

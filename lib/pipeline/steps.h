@@ -4,15 +4,16 @@
 
 #include "vdbfuse/fusion/calibrate.h"
 #include "vdbfuse/fusion/domain.h"
-#include "vdbfuse/pipeline/reconstruct.h"
+#include "vdbfuse/pipeline/judge_scan.h"
 
 namespace vdbfuse {
 
 void requireUsable(const ReconstructOptions& options);
 void requireUsable(const ViewSequence& views, const ReconstructOptions& options);
 
-/// All views in memory, without their colours.
-std::vector<View> loadViews(const ViewSequence& views, const Progress& progress);
+/// All views as scan.plan wants them, without their colours, in scan.memory where they do not fit; and their
+/// size.
+std::vector<View> loadViews(const ViewSequence& views, JudgedScan& scan, const Progress& progress);
 
 ViewGraph makeGraph(const std::vector<View>& views, const DepthStatistics& depths);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/memory.h"
 #include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {

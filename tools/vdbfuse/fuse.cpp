@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "fuse_report.h"
 #include "json_file.h"
+#include "memory_option.h"
 #include "progress_line.h"
 #include "sensor_options.h"
 #include "vdbfuse/base/errors.h"
@@ -83,6 +84,7 @@ void addOutputOptions(CLI::App& app, Request& r) {
   app.add_option("--save-grids", r.grids,
                  "Also write rho, sigma, support and the signed field as OpenVDB grids");
   app.add_option("--json", r.json, "Write what was done as one JSON object");
+  addMemoryOption(app, r.reconstruct.memory);
   app.add_option("--threads", r.threads, "Number of threads; 0: all processors")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--overwrite", r.overwrite, "Replace existing output files");
@@ -134,9 +136,16 @@ void writeOutputs(const Request& request, const Reconstruction& result, const Fu
 }
 
 JudgedScan judged(const DepthSet& set, Request& request, const Progress& progress) {
-  if (request.judgement.empty()) return judgeScan(set.views, request.reconstruct, progress);
-  JudgedScan scan = readJudgement(request.judgement, set.views, progress);
-  request.reconstruct.noise_shape = scan.judgement.judged.sensor.shape;
+  StepTimer timer;
+  timer.start("plan");
+  ScanPlan plan = planReconstruction(set.views, request.reconstruct, progress);
+  std::vector<StepTime> steps = timer.finish();
+  if (!request.quiet) printPlan(plan, request.reconstruct.method);
+  JudgedScan scan = request.judgement.empty()
+                        ? judgeScan(set.views, request.reconstruct, std::move(plan), progress)
+                        : readJudgement(request.judgement, set.views, std::move(plan), progress);
+  if (!request.judgement.empty()) request.reconstruct.noise_shape = scan.judgement.judged.sensor.shape;
+  scan.steps.insert(scan.steps.begin(), steps.begin(), steps.end());
   return scan;
 }
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 
 #include "json_file.h"
+#include "memory_option.h"
+#include "vdbfuse/base/memory.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -127,7 +129,18 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
   j["mesh"] = meshJson(result, context.topology);
   j["steps"] = stepsJson(result.steps);
   j["peak_memory_bytes"] = peakMemoryBytes();
+  j["memory"] = {{"budget_bytes", result.memory.budget},
+                 {"estimated_bytes", result.memory.estimated},
+                 {"view_window_bytes", result.memory.window}};
   writeJson(path, j);
+}
+
+void printPlan(const ScanPlan& plan, Method method) {
+  if (!plan.survey) return;
+  std::fprintf(stderr, "voxel %.4g, about %.2g %s and %s of memory (%s may be used)%s\n", plan.voxel,
+               plan.cells, method == Method::Tsdf ? "voxels" : "cells",
+               sizeText(plan.estimated_memory).c_str(), sizeText(plan.memory_budget).c_str(),
+               plan.window_bytes > 0 ? "; the depth maps lie in a file and pass by" : "");
 }
 
 void printFuseReport(const Reconstruction& result, const FuseContext& context,

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "vdbfuse/mesh/topology.h"
-#include "vdbfuse/pipeline/reconstruct.h"
+#include "vdbfuse/pipeline/plan.h"
 
 namespace vdbfuse::tool {
 
@@ -22,6 +22,9 @@ struct FuseContext {
 /// memory.
 void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result,
                    const FuseContext& context);
+
+/// What is about to be done and what it will take, on stderr.
+void printPlan(const ScanPlan& plan, Method method);
 
 /// A few lines on stdout.
 void printFuseReport(const Reconstruction& result, const FuseContext& context,

@@ -8,10 +8,12 @@
 
 #include "commands.h"
 #include "json_file.h"
+#include "memory_option.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "sensor_options.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/memory.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/pipeline/judgement_folder.h"
 
@@ -76,6 +78,7 @@ void addJudge(CLI::App& app, Action& action) {
   sub.add_option("OUTDIR", request->output, "Folder to write")->required();
   addSensorOptions(sub, request->sensor, request->options);
   sub.add_option("--json", request->json, "Write judgement.json, with times and memory, here as well");
+  addMemoryOption(sub, request->options.memory);
   sub.add_option("--threads", request->threads, "Number of threads; 0: all processors")
       ->check(CLI::NonNegativeNumber);
   sub.add_flag("--overwrite", request->overwrite, "Replace existing outputs");

@@ -67,7 +67,4 @@ class StepTimer {
   bool running_ = false;
 };
 
-/// Largest resident memory of this process so far, bytes; 0 where the system does not tell.
-std::size_t peakMemoryBytes();
-
 }  // namespace vdbfuse

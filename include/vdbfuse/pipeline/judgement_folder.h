@@ -35,5 +35,8 @@ void writeJudgement(const std::filesystem::path& folder, const JudgedScan& scan,
 /// and sizes must be the same.
 JudgedScan readJudgement(const std::filesystem::path& folder, const ViewSequence& views,
                          const Progress& progress = {});
+/// The same as planned, but for the size of the images.
+JudgedScan readJudgement(const std::filesystem::path& folder, const ViewSequence& views, ScanPlan plan,
+                         const Progress& progress = {});
 
 }  // namespace vdbfuse

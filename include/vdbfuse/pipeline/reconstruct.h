@@ -54,6 +54,10 @@ struct ReconstructOptions {
   double smoothing_voxels = 1.0;
   double truncation = 0.0;  ///< of the TSDF, length; default max(4 voxels, 3 × noise)
 
+  /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
+  /// /var/tmp) and pass by; where the cells do not fit, the reconstruction is refused before it begins.
+  std::size_t memory = 0;
+
   /// Keep ρ, σ, support and the signed field in the result.
   enum class Grids { Drop, Keep } grids = Grids::Drop;
 };
@@ -98,6 +102,12 @@ struct CutReportSummary {
   CavityReport cavities;
 };
 
+struct MemoryReport {
+  std::size_t budget = 0;     ///< bytes that might be used
+  std::size_t estimated = 0;  ///< bytes at the peak, before the work began
+  std::size_t window = 0;     ///< bytes of views in memory at a time; 0: all of them
+};
+
 struct Reconstruction {
   TriangleMesh mesh;  ///< with normals and support
   CalibrationReport calibration;
@@ -105,6 +115,7 @@ struct Reconstruction {
   std::optional<CutReportSummary> cut;  ///< nothing for the TSDF
   double invented_area_share = 0;       ///< share of the area that no view supports
   std::vector<ScalarGrid> grids;
+  MemoryReport memory;
   std::vector<StepTime> steps;
   std::size_t width = 0, height = 0;  ///< of the first view
 };

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+namespace vdbfuse {
+
+/// Memory that this process may still take without others being driven out, bytes: what the system has
+/// available, and no more than the limit of the process's control group leaves. The largest number there is
+/// where the system does not tell.
+std::size_t availableMemoryBytes();
+
+/// Largest resident memory of this process so far, bytes; 0 where the system does not tell.
+std::size_t peakMemoryBytes();
+
+}  // namespace vdbfuse

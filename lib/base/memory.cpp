@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vdbfuse/base/memory.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace vdbfuse {
+namespace {
+
+constexpr std::size_t kUnknownSize = std::numeric_limits<std::size_t>::max();
+
+std::size_t availableOfSystem() {
+  std::ifstream file("/proc/meminfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("MemAvailable:")) return std::stoull(line.substr(13)) * 1024;
+  }
+  return kUnknownSize;
+}
+
+std::optional<std::size_t> numberIn(const std::string& path) {
+  std::ifstream file(path);
+  std::size_t number = 0;
+  if (file >> number) return number;
+  return std::nullopt;  // no such file, or "max"
+}
+
+// Of the control group whose files a container sees at the usual place.
+std::size_t availableOfGroup(const std::string& limit_file, const std::string& usage_file) {
+  const auto limit = numberIn(limit_file), usage = numberIn(usage_file);
+  if (!limit || !usage) return kUnknownSize;
+  return *limit > *usage ? *limit - *usage : 0;
+}
+
+}  // namespace
+
+std::size_t availableMemoryBytes() {
+  return std::min({availableOfSystem(),
+                   availableOfGroup("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
+                   availableOfGroup("/sys/fs/cgroup/memory/memory.limit_in_bytes",
+                                    "/sys/fs/cgroup/memory/memory.usage_in_bytes")});
+}
+
+std::size_t peakMemoryBytes() {
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace vdbfuse
