@@ -2,8 +2,8 @@
 #include "vdbfuse/fusion/agreement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <span>
 
 #include "fusion/block_kernels.h"
 #include "fusion/touched_leaves.h"
@@ -17,8 +17,6 @@ namespace {
 // Pixels less reliable than this make no leaves of their own: an outlier must not size the grid.
 constexpr float kMaxOutlierOfSeeds = 0.5f;
 constexpr float kLeastAlternativeOfSeeds = 0.2f;
-// The kernel is cut off at this many widths.
-constexpr float kKernelReach = 2.0f;
 
 std::vector<Eigen::Vector3d> voxelsOf(const ScalarGrid::Leaf& leaf, const GridFrame& frame) {
   std::vector<Eigen::Vector3d> points;
@@ -27,23 +25,18 @@ std::vector<Eigen::Vector3d> voxelsOf(const ScalarGrid::Leaf& leaf, const GridFr
   return points;
 }
 
-void addView(const PreparedView& prepared, const PointBlock& block, double voxel, std::span<float> counts) {
-  if (!prepared.projector.mightSee(block.centre, block.radius)) return;
-  const JudgedView& view = *prepared.view;
-  const BlockLook seen = look(prepared, block);
-  for (std::size_t k = 0; k < block.size; ++k) {
-    if (seen.pixel[k] < 0) continue;
-    const std::size_t pixel = static_cast<std::size_t>(seen.pixel[k]);
-    if (view.depth.data()[pixel] == kInvalidDepth) continue;
-    float kernels = 0;
-    forEachHypothesis(prepared, pixel, [&](float depth, float share) {
-      const float width = std::max(static_cast<float>(voxel), prepared.noise.at(depth));
-      const float r = std::abs(depth - seen.depth[k]) / width;
-      if (r <= kKernelReach) kernels += share * std::exp(-r * r);
-    });
-    if (kernels > 0)
-      counts[k] += static_cast<float>(view.weight) * (1.0f - view.outlier.data()[pixel]) * kernels;
+// All views' counts at the voxels of a leaf.
+void addViews(const std::vector<PreparedView>& views, const GridFrame& frame, const ScalarGrid::Leaf& leaf) {
+  const std::vector<Eigen::Vector3d> voxels = voxelsOf(leaf, frame);
+  const PointBlock block(voxels);
+  alignas(64) std::array<float, PointBlock::kCapacity> counts;
+  std::copy(leaf.values.begin(), leaf.values.end(), counts.begin());
+  for (const PreparedView& view : views) {
+    if (!view.projector.mightSee(block.centre, block.radius)) continue;
+    agree(view, static_cast<float>(frame.voxel), static_cast<float>(view.view->weight), look(view, block),
+          block.size, counts.data());
   }
+  std::copy_n(counts.begin(), leaf.values.size(), leaf.values.begin());
 }
 
 }  // namespace
@@ -51,14 +44,12 @@ void addView(const PreparedView& prepared, const PointBlock& block, double voxel
 ScalarGrid countAgreement(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
                           const Progress& progress) {
   const TouchOptions touch{kMaxOutlierOfSeeds, kLeastAlternativeOfSeeds,
-                           [&](double noise) { return kKernelReach * std::max(frame.voxel, noise); }};
+                           [&](double noise) { return kAgreementReach * std::max(frame.voxel, noise); }};
   ScalarGrid support("support", frame, 0.0f, touchedLeaves(judged, frame, domain, touch, progress));
   ProgressStep step(progress, "count agreement", support.leafCount() * judged.views.size());
   forEachPrepared(judged, [&](const std::vector<PreparedView>& views) {
     support.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
-      const std::vector<Eigen::Vector3d> voxels = voxelsOf(leaf, frame);
-      const PointBlock block(voxels);
-      for (const PreparedView& view : views) addView(view, block, frame.voxel, leaf.values);
+      addViews(views, frame, leaf);
       step.advance(views.size());
     });
   });

@@ -174,6 +174,33 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
   }
 }
 
+void agreeSingle(const PreparedView& view, float voxel, float weight, const BlockLook& look, std::size_t size,
+                 float* counts) {
+  const Floats df;
+  const Ints di;
+  const float* depths = view.view->depth.data();
+  const float* outliers = view.view->outlier.data();
+  const Table noise(view.noise.values(), view.noise.near(), view.noise.perStep(), NoiseTable::kSteps);
+  const FloatVec one = hn::Set(df, 1.0f), zero = hn::Zero(df), least = hn::Set(df, voxel);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(df)) {
+    const IntVec pixel = hn::Load(di, &look.pixel[i]);
+    const auto seen = hn::RebindMask(df, hn::Gt(pixel, hn::Set(di, -1)));
+    const IntVec place = hn::Max(pixel, hn::Zero(di));
+    const FloatVec measured = hn::IfThenElseZero(seen, hn::GatherIndex(df, depths, place));
+    const FloatVec distance = hn::Abs(hn::Sub(measured, hn::Load(df, &look.depth[i])));
+    const float furthest = hn::GetLane(hn::MaxOfLanes(df, measured));
+    const float reach = kAgreementReach * std::max(voxel, view.noise.boundUpTo(furthest));
+    auto agrees = hn::And(hn::Gt(measured, zero), hn::Le(distance, hn::Set(df, reach)));
+    if (hn::AllFalse(df, agrees)) continue;
+    const FloatVec r = hn::Div(distance, hn::Max(least, noise(measured)));
+    agrees = hn::And(agrees, hn::Le(r, hn::Set(df, kAgreementReach)));
+    const FloatVec reliability = hn::Sub(one, hn::GatherIndex(df, outliers, place));
+    const FloatVec kernel = hn::Exp(df, hn::Neg(hn::Mul(r, r)));
+    const FloatVec count = hn::Mul(hn::Mul(hn::Set(df, weight), reliability), kernel);
+    hn::Store(hn::Add(hn::Load(df, counts + i), hn::IfThenElseZero(agrees, count)), df, counts + i);
+  }
+}
+
 void accumulateNodes(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,
                      std::size_t size, float* sums) {
   const hn::CappedTag<float, 8> d;
@@ -226,6 +253,7 @@ namespace {
 
 HWY_EXPORT(lookPinhole);
 HWY_EXPORT(testifySingle);
+HWY_EXPORT(agreeSingle);
 HWY_EXPORT(accumulateNodes);
 HWY_EXPORT(logMeansOfNodes);
 HWY_EXPORT(targetName);
@@ -260,6 +288,22 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, floa
   }
 }
 
+void agreeAny(const PreparedView& prepared, float voxel, float weight, const BlockLook& look,
+              std::size_t size, float* counts) {
+  const JudgedView& view = *prepared.view;
+  for (std::size_t k = 0; k < size; ++k) {
+    if (look.pixel[k] < 0) continue;
+    const std::size_t pixel = static_cast<std::size_t>(look.pixel[k]);
+    if (view.depth.data()[pixel] == kInvalidDepth) continue;
+    float kernels = 0;
+    forEachHypothesis(prepared, pixel, [&](float depth, float share) {
+      const float r = std::abs(depth - look.depth[k]) / std::max(voxel, prepared.noise.at(depth));
+      if (r <= kAgreementReach) kernels += share * std::exp(-r * r);
+    });
+    counts[k] += weight * (1.0f - view.outlier.data()[pixel]) * kernels;
+  }
+}
+
 }  // namespace
 
 BlockLook look(const Projector& projector, const PointBlock& block) {
@@ -283,6 +327,15 @@ BlockLook look(const PreparedView& view, const PointBlock& block) {
   prefetch(view.view->depth.data(), result, block.size);
   prefetch(view.view->outlier.data(), result, block.size);
   return result;
+}
+
+void agree(const PreparedView& view, float voxel, float weight, const BlockLook& look, std::size_t size,
+           float* counts) {
+  if (view.view->alternatives.empty()) {
+    HWY_DYNAMIC_DISPATCH(agreeSingle)(view, voxel, weight, look, size, counts);
+  } else {
+    agreeAny(view, voxel, weight, look, size, counts);
+  }
 }
 
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,

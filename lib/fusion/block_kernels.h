@@ -25,6 +25,14 @@ BlockLook look(const PreparedView& view, const PointBlock& block);
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,
                        const BlockLook& look, std::size_t size);
 
+/// The kernel of C(x) is cut off at this many widths.
+inline constexpr float kAgreementReach = 2.0f;
+
+/// counts[i] += weight (1 − ε) exp(−(r/max(voxel, s))²), r the distance between depth and measurement: one
+/// view's part of C (agreement.h). `counts`: at the start of a vector of PointBlock::kCapacity.
+void agree(const PreparedView& view, float voxel, float weight, const BlockLook& look, std::size_t size,
+           float* counts);
+
 /// sums[i · nodes + k] += weight · share_i · log(1 − v_k + v_k L_i).
 void accumulate(const VisibilityIntegral& integral, const BlockTestimony& testimony, float weight,
                 std::size_t size, float* sums);

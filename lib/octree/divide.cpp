@@ -11,7 +11,7 @@ namespace {
 
 // Capacities of the cut are rounded to integers.
 constexpr double kFacesOfACube = 6.0, kRounding = 1.01;
-constexpr double kMatters = 0.5;
+constexpr double kMatters = 1.0;
 
 }  // namespace
 
