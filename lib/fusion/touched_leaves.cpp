@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fusion/touched_leaves.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
+#include <array>
 
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/volume/leaf_index.h"
@@ -9,12 +12,42 @@
 namespace vdbfuse {
 namespace {
 
+// Origins as numbers in the order of ScalarGrid's leaves, counted from the lowest leaf of the domain.
+class LeafKeys {
+ public:
+  LeafKeys(const GridFrame& frame, const Box& domain)
+      : base_(leafOrigin(frame.toIndex(domain.min()).array().floor().cast<int>().matrix())) {}
+
+  std::uint64_t key(const Index3& origin) const {
+    std::uint64_t result = 0;
+    for (int a = 0; a < 3; ++a)
+      result = result << kBits | static_cast<std::uint64_t>((origin[a] - base_[a]) / kSide + kOffset);
+    return result;
+  }
+  Index3 origin(std::uint64_t key) const {
+    Index3 result;
+    for (int a = 2; a >= 0; --a, key >>= kBits)
+      result[a] = base_[a] + kSide * (static_cast<int>(key & ((1u << kBits) - 1)) - kOffset);
+    return result;
+  }
+
+ private:
+  // A domain is at most 2¹⁷ leaves long (kMaxOctreeSide); as much again on either side is room for the reach.
+  static constexpr int kSide = ScalarGrid::kLeafSide, kBits = 21, kOffset = 1 << 19;
+  Index3 base_;
+};
+
+void sortUnique(std::vector<std::uint64_t>& keys) {
+  tbb::parallel_sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+}
+
 // Collects the leaves around points, mostly neighbours of each other.
 class LeafCollector {
  public:
   LeafCollector(const PreparedView& prepared, const GridFrame& frame, const Box& domain,
-                const TouchOptions& options)
-      : prepared_(prepared), frame_(frame), domain_(domain), options_(options) {}
+                const TouchOptions& options, const LeafKeys& keys)
+      : prepared_(prepared), frame_(frame), domain_(domain), options_(options), keys_(keys) {}
 
   void touch(int x, int y, float depth) {
     const JudgedView& view = *prepared_.view;
@@ -26,28 +59,38 @@ class LeafCollector {
     const Index3 high = leafOrigin((index.array() + reach).ceil().cast<int>().matrix());
     for (int i = low.x(); i <= high.x(); i += 8) {
       for (int j = low.y(); j <= high.y(); j += 8) {
-        for (int k = low.z(); k <= high.z(); k += 8) {
-          const Index3 origin(i, j, k);
-          if (origins_.empty() || origins_.back() != origin) origins_.push_back(origin);
-        }
+        for (int k = low.z(); k <= high.z(); k += 8) add(keys_.key({i, j, k}));
       }
     }
   }
-  void tidy() { sortUniqueOrigins(origins_); }
-  std::vector<Index3> take() { return std::move(origins_); }
+  std::vector<std::uint64_t> take() {
+    std::sort(found_.begin(), found_.end());
+    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
+    return std::move(found_);
+  }
 
  private:
+  void add(std::uint64_t key) {
+    std::uint64_t& recent = recent_[key * 0x9e3779b97f4a7c15ULL >> 54];
+    if (recent == key) return;
+    recent = key;
+    found_.push_back(key);
+  }
+
   const PreparedView& prepared_;
   const GridFrame& frame_;
   const Box& domain_;
   const TouchOptions& options_;
-  std::vector<Index3> origins_;
+  const LeafKeys& keys_;
+  std::vector<std::uint64_t> found_;
+  std::array<std::uint64_t, 1024> recent_{};  // no leaf has key 0
 };
 
-std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame& frame, const Box& domain,
-                                  const TouchOptions& options) {
+std::vector<std::uint64_t> touchedByView(const PreparedView& prepared, const GridFrame& frame,
+                                         const Box& domain, const TouchOptions& options,
+                                         const LeafKeys& keys) {
   const JudgedView& view = *prepared.view;
-  LeafCollector leaves(prepared, frame, domain, options);
+  LeafCollector leaves(prepared, frame, domain, options, keys);
   for (int y = 0; y < view.depth.height(); ++y) {
     for (int x = 0; x < view.depth.width(); ++x) {
       if (view.depth(x, y) == kInvalidDepth) continue;
@@ -59,10 +102,7 @@ std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame&
           leaves.touch(x, y, other.depth(x, y));
       }
     }
-    // Neighbouring rows touch the same leaves: keep the list short.
-    if (y % 16 == 15) leaves.tidy();
   }
-  leaves.tidy();
   return leaves.take();
 }
 
@@ -70,21 +110,25 @@ std::vector<Index3> touchedByView(const PreparedView& prepared, const GridFrame&
 
 std::vector<Index3> touchedLeaves(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
                                   const TouchOptions& options, const Progress& progress) {
-  std::vector<std::vector<Index3>> parts(judged.views.size());
+  constexpr std::size_t kViewsAtATime = 64;
+  const LeafKeys keys(frame, domain);
+  std::vector<std::uint64_t> all;
   ProgressStep step(progress, "allocate grid", judged.views.size());
-  parallelFor(judged.views.size(), 1, [&](std::size_t i, std::size_t) {
-    parts[i] = touchedByView(PreparedView(judged.views[i], judged.sensor), frame, domain, options);
-    letGo(judged.views[i]);
-    step.advance();
-  });
-  std::vector<Index3> all;
-  for (const auto& part : parts) {
-    std::vector<Index3> merged;
-    std::set_union(all.begin(), all.end(), part.begin(), part.end(), std::back_inserter(merged),
-                   originBefore);
-    all = std::move(merged);
+  for (std::size_t begin = 0; begin < judged.views.size(); begin += kViewsAtATime) {
+    std::vector<std::vector<std::uint64_t>> parts(std::min(kViewsAtATime, judged.views.size() - begin));
+    parallelFor(parts.size(), 1, [&](std::size_t i, std::size_t) {
+      const JudgedView& view = judged.views[begin + i];
+      parts[i] = touchedByView(PreparedView(view, judged.sensor), frame, domain, options, keys);
+      letGo(view);
+      step.advance();
+    });
+    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+    sortUnique(all);
   }
-  return all;
+  std::vector<Index3> origins;
+  origins.reserve(all.size());
+  for (const std::uint64_t key : all) origins.push_back(keys.origin(key));
+  return origins;
 }
 
 }  // namespace vdbfuse
