@@ -21,6 +21,8 @@ constexpr double kPixelsPerView = 3000;
 constexpr std::size_t kNearPairs = 6, kFarPairs = 6;
 constexpr std::array kAngleBinsDeg = {2.0, 8.0, 20.0, 40.0, 60.0, 75.0};
 constexpr std::size_t kEnoughPairs = 400;
+// More are not fitted: half a million tell a scale to 0.1 %.
+constexpr std::size_t kEnoughResiduals = 500'000;
 // Residuals beyond this share of the depth are not noise; what lies below is modelled.
 constexpr double kLargestResidual = 0.03;
 // A surface that either view sees at a flatter angle, or from behind, says little of the noise along the
@@ -126,6 +128,14 @@ class ResidualCollector {
   const NoiseLaw& guess_;
 };
 
+// At most `count` of them, evenly.
+std::vector<Residual> thinned(const std::vector<Residual>& residuals, std::size_t count) {
+  std::vector<Residual> result;
+  const std::size_t kept = std::min(count, residuals.size());
+  for (std::size_t i = 0; i < kept; ++i) result.push_back(residuals[i * residuals.size() / kept]);
+  return result;
+}
+
 std::vector<Residual> collectResiduals(const std::vector<View>& views, const ViewGraph& graph,
                                        const NoiseLaw& guess, const Progress& progress) {
   std::vector<std::vector<Residual>> parts(views.size());
@@ -138,7 +148,7 @@ std::vector<Residual> collectResiduals(const std::vector<View>& views, const Vie
                        [&](std::size_t i) { letGo(views[i]); }};
   for (std::size_t i = 0; i < views.size(); ++i) pairs.needed.push_back(pairedViews(graph, i));
   forEachNeighbourhood(pairs, [&](std::size_t i) {
-    parts[i] = collector.collect(i, pairs.needed[i]);
+    parts[i] = thinned(collector.collect(i, pairs.needed[i]), kEnoughResiduals / views.size() + 1);
     step.advance();
   });
   std::vector<Residual> all;

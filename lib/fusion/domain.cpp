@@ -12,7 +12,7 @@
 namespace vdbfuse {
 namespace {
 
-constexpr double kPixelsPerView = 20000;
+constexpr double kPixelsPerView = 20000, kPixels = 4e6;  // the smaller one of many views
 // Trust a place needs: so many reliable points, or this share of what places have where most points are.
 constexpr double kEnoughPoints = 3.0, kEnoughShare = 0.25;
 // Undecided pixels count only where hardly any pixel is decided.
@@ -28,10 +28,11 @@ struct ReliablePoint {
 
 std::vector<ReliablePoint> reliablePoints(const JudgedViews& judged, float max_outlier) {
   std::vector<ReliablePoint> points;
+  const double wanted = std::min(kPixelsPerView, kPixels / static_cast<double>(judged.views.size()));
   for (std::size_t i = 0; i < judged.views.size(); ++i) {
     const JudgedView& view = judged.views[i];
     const int stride =
-        std::max(1, static_cast<int>(std::sqrt(static_cast<double>(view.depth.size()) / kPixelsPerView)));
+        std::max(1, static_cast<int>(std::sqrt(static_cast<double>(view.depth.size()) / wanted)));
     for (int y = stride / 2; y < view.depth.height(); y += stride) {
       for (int x = stride / 2; x < view.depth.width(); x += stride) {
         const float depth = view.depth(x, y), outlier = view.outlier(x, y);

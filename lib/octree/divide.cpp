@@ -15,8 +15,9 @@ constexpr double kMatters = 1.0;
 
 }  // namespace
 
-bool isDecided(double side, float weakest_evidence, float support, double lambda) {
-  return support == 0.0f && lambda * std::abs(weakest_evidence) * side >= kRounding * kFacesOfACube;
+bool isDecided(double side, float weakest_evidence, float support, const DivideOptions& options) {
+  const double evidence = std::min<double>(std::abs(weakest_evidence), options.max_evidence);
+  return support == 0.0f && options.lambda * evidence * side >= kRounding * kFacesOfACube;
 }
 
 std::vector<std::size_t> cellsToDivide(const Octree& octree, const CellTiles& tiles,
@@ -27,10 +28,8 @@ std::vector<std::size_t> cellsToDivide(const Octree& octree, const CellTiles& ti
     if (octree.levels[cell] == 0) return false;
     const double side = h * octree.side(cell);
     const double weaker = std::min(std::abs(evidence.mean[cell]), std::abs(other));
-    if (options.lambda * weaker * side < kMatters) return false;
-    const auto most = static_cast<float>(options.max_evidence);
-    return options.decided == DivideOptions::Decided::Divide ||
-           !isDecided(side, std::clamp(evidence.weakest[cell], -most, most), support[cell], options.lambda);
+    return options.lambda * weaker * side >= kMatters &&
+           !isDecided(side, evidence.weakest[cell], support[cell], options);
   };
   std::vector<std::size_t> found;
   forEachFace(tiles, [&](const CellFace& face) {

@@ -19,6 +19,7 @@ constexpr double kShareOfFree = 0.8;
 // Measured with the tool, release build: tests/benchmark/resolutions.py.
 constexpr double kProcess = 60 * kMiB;         // code, tables, the images of a few views in the works
 constexpr double kJudgedBytesPerPixel = 16.0;  // while views are judged: the list is in reliability.cpp
+constexpr double kJudging = 250 * kMiB;        // beside the views: the grid of denial, points of the domain
 constexpr double kKeptBytesPerPixel = 13.0;    // depth, ε, incidence, look
 constexpr double kPass = 260 * kMiB;           // sums of the evidence
 constexpr double kBytesPerCell = 128.0;        // when the cut is solved
@@ -90,7 +91,7 @@ bool decideMemory(const Pixels& pixels, double grid, ScanPlan& plan) {
   if (in_memory <= budget) return true;
   // All that the cells leave is for views.
   const double least = kLeastViews * kJudgedBytesPerPixel * pixels.largest;
-  const double fixed = kProcess + std::max(grid, 64 * pixels.largest);
+  const double fixed = kProcess + std::max(grid, kJudging + 64 * pixels.largest);
   const double window = std::min(budget - fixed, kJudgedBytesPerPixel * pixels.all / 2);
   plan.window_bytes = static_cast<std::size_t>(std::max(window, least));
   plan.estimated_memory = static_cast<std::size_t>(fixed) + plan.window_bytes;

@@ -48,7 +48,7 @@ void pairs(benchmark::State& state, std::size_t a_round) {
 }
 
 void BM_Look(benchmark::State& state) {
-  const std::vector<PreparedView> views = prepare(scan());
+  const std::vector<PreparedView> views = prepare(scan(), 0, scan().views.size());
   const auto points = blocks(64);
   for (auto _ : state) {
     for (const auto& block : points)
@@ -59,7 +59,7 @@ void BM_Look(benchmark::State& state) {
 BENCHMARK(BM_Look);
 
 void BM_Testify(benchmark::State& state) {
-  const std::vector<PreparedView> views = prepare(scan());
+  const std::vector<PreparedView> views = prepare(scan(), 0, scan().views.size());
   const LikelihoodRatio ratio(scan().sensor);
   const auto points = blocks(64);
   std::vector<BlockLook> looks;

@@ -45,7 +45,7 @@ class EveryProjection : public testing::TestWithParam<int> {
 
 TEST_P(EveryProjection, LookingAtABlockIsLookingAtEachPoint) {
   const OneView scene(projection());
-  const PreparedView view = prepare(scene.judged).front();
+  const PreparedView view = PreparedView(scene.judged.views.front(), scene.judged.sensor);
   for (const std::size_t count : {512u, 511u, 3u, 1u}) {
     const auto points = randomPoints(count, Eigen::Vector3d::Zero(), 1.2);
     const BlockLook seen = look(view, PointBlock(points));
@@ -66,7 +66,7 @@ TEST_P(EveryProjection, FarFromTheOriginNothingIsLost) {
   OneView scene(projection());
   const Eigen::Vector3d shift(4e5, -5e6, 120);
   scene.judged.views.front().world_from_camera.pretranslate(shift);
-  const PreparedView view = prepare(scene.judged).front();
+  const PreparedView view = PreparedView(scene.judged.views.front(), scene.judged.sensor);
   const auto points = randomPoints(512, shift, 0.5);
   const BlockLook seen = look(view, PointBlock(points));
   for (std::size_t i = 0; i < 512; ++i) {
@@ -83,7 +83,7 @@ TEST(BlockKernels, TheTestimonyOfABlockIsTheExactRatioOfEachPoint) {
   for (const NoiseShape& shape : {gaussianNoise(), logisticNoise(), laplaceNoise()}) {
     OneView scene;
     scene.judged.sensor.shape = shape;
-    const PreparedView view = prepare(scene.judged).front();
+    const PreparedView view = PreparedView(scene.judged.views.front(), scene.judged.sensor);
     const LikelihoodRatio ratio(scene.judged.sensor);
     const auto points = randomPoints(500, Eigen::Vector3d::Zero(), 0.55);
     const BlockLook seen = look(view, PointBlock(points));
@@ -108,7 +108,7 @@ TEST(BlockKernels, FarFromTheSurfaceTheTestimonyIsTheExactRatioToo) {
       OneView scene;
       scene.judged.sensor.shape = shape;
       scene.judged.sensor.near = 0.5;
-      const PreparedView view = prepare(scene.judged).front();
+      const PreparedView view = PreparedView(scene.judged.views.front(), scene.judged.sensor);
       const LikelihoodRatio ratio(scene.judged.sensor);
       const Eigen::Vector3d towards = scene.judged.views.front().world_from_camera.translation().normalized();
       const auto points = randomPoints(500, 0.8 * shift * towards, 0.2);
@@ -133,7 +133,7 @@ TEST(BlockKernels, AViewCountsForLessBehindWhatItMeasured) {
     OneView scene;
     JudgedView& judged = scene.judged.views.front();
     if (several) judged.alternatives.push_back({Image<float>(64, 64), Image<float>(64, 64)});
-    const PreparedView view = prepare(scene.judged).front();
+    const PreparedView view = PreparedView(scene.judged.views.front(), scene.judged.sensor);
     const LikelihoodRatio ratio(scene.judged.sensor);
     const auto points = randomPoints(500, Eigen::Vector3d::Zero(), 0.55);
     const BlockLook seen = look(view, PointBlock(points));
@@ -155,7 +155,7 @@ TEST(BlockKernels, AnAlternativeDepthIsHeard) {
   JudgedView& judged = scene.judged.views.front();
   judged.outlier = Image<float>(64, 64, 0.01f);
   judged.alternatives.push_back({Image<float>(64, 64, 2.4f), Image<float>(64, 64, 0.4f)});
-  const PreparedView view = prepare(scene.judged).front();
+  const PreparedView view = PreparedView(scene.judged.views.front(), scene.judged.sensor);
   const LikelihoodRatio ratio(scene.judged.sensor);
   const auto points = randomPoints(300, Eigen::Vector3d::Zero(), 0.4);
   const BlockLook seen = look(view, PointBlock(points));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "fusion/packed_normal.h"
 #include "fusion/scenes.h"
 
 namespace vdbfuse {
@@ -40,6 +41,36 @@ TEST(PixelSurface, TheNormalsOfASpherePointAwayFromItsCentre) {
       ++count;
     }
   EXPECT_GT(count, 3000);
+}
+
+TEST(PixelSurface, OnePixelAloneHasTheSameNormal) {
+  std::vector<View> views = test::sphereViews(1);
+  test::addNoise(views, {0.004, 0, 0}, 2);
+  const NoiseLaw noise{0.004, 0, 0};
+  const PixelSurface surface = analyseSurface(views[0], noise);
+  for (int i = 0; i < 64; ++i) {
+    for (const int y : {0, 17, 40, 63})
+      EXPECT_EQ(surfaceNormal(views[0], noise, i, y), surface.normal(i, y)) << i << " " << y;
+  }
+}
+
+TEST(PackedNormal, KeepsDirectionsToATenThousandth) {
+  Random random(2);
+  for (int i = 0; i < 10000; ++i) {
+    Eigen::Vector3f n(static_cast<float>(random.normal()), static_cast<float>(random.normal()),
+                      static_cast<float>(random.normal()));
+    if (i < 100) n[i % 3] = 0;
+    n.normalize();
+    const PackedNormal packed(n);
+    ASSERT_FALSE(packed.isNone());
+    ASSERT_LT((packed.unpack() - n).norm(), 1e-4f) << n.transpose();
+  }
+  for (int a = 0; a < 6; ++a) {
+    const Eigen::Vector3f n = (a % 2 == 0 ? 1.0f : -1.0f) * Eigen::Vector3f::Unit(a / 2);
+    EXPECT_LT((PackedNormal(n).unpack() - n).norm(), 1e-6f);
+  }
+  EXPECT_TRUE(PackedNormal().isNone());
+  EXPECT_TRUE(PackedNormal(Eigen::Vector3f::Zero()).unpack().isZero());
 }
 
 TEST(PixelSurface, AStepEndsTheSurface) {

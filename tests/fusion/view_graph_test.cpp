@@ -36,6 +36,26 @@ double sumOf(const std::vector<double>& weights) {
   return std::accumulate(weights.begin(), weights.end(), 0.0);
 }
 
+TEST(PathThrough, VisitsEveryViewOnceFromNeighbourToNeighbour) {
+  std::vector<ViewHeader> views = ring(36, 10);
+  std::vector<std::size_t> shuffled;
+  for (std::size_t i = 0; i < 36; ++i) shuffled.push_back(i * 7 % 36);
+  std::vector<ViewHeader> mixed;
+  for (const std::size_t i : shuffled) mixed.push_back(views[i]);
+  const std::vector<std::size_t> path = pathThrough(graphOf(mixed), mixed.size());
+  ASSERT_EQ(path.size(), 36u);
+  std::vector<bool> visited(36, false);
+  int far = 0;
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    EXPECT_FALSE(visited[path[k]]);
+    visited[path[k]] = true;
+    if (k == 0) continue;
+    const auto steps = (36 + shuffled[path[k]] - shuffled[path[k - 1]]) % 36;
+    far += steps != 1 && steps != 35;
+  }
+  EXPECT_LE(far, 1);
+}
+
 TEST(ViewGraph, TheAngleOfCamerasThatCircleAnObjectIsTheAngleBetweenThem) {
   const ViewGraph graph = graphOf(ring(36, 10));
   EXPECT_NEAR(graph.angle(0, 1), 10 * kDegree, 0.002);

@@ -53,8 +53,8 @@ TEST(Reconstruct, ANoisySphereIsOneClosedSphereOfTheRightSize) {
   EXPECT_EQ(result.width, 64u);
   std::vector<std::string> names;
   for (const StepTime& s : result.steps) names.push_back(s.name);
-  EXPECT_THAT(names, testing::ElementsAre("load", "calibrate", "judge", "agreement", "octree", "evidence",
-                                          "cut", "surface"));
+  EXPECT_THAT(names, testing::ElementsAre("plan", "load", "calibrate", "judge", "agreement", "octree",
+                                          "evidence", "cut", "surface"));
 }
 
 TEST(Reconstruct, IsTheSameMeshToTheLastBitForOneAndTwoThreads) {

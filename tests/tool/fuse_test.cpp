@@ -68,6 +68,30 @@ class FuseTool : public testing::Test {
   TemporaryFolder folder;
 };
 
+TEST_F(FuseTool, AVoxelThatNeedsTooMuchMemoryIsRefusedWithOneThatFits) {
+  EXPECT_THAT(complaint("scan mesh.ply --voxel 0.00001 --memory 2GiB"),
+              testing::AllOf(HasSubstr("voxel: 1e-05 needs about"), HasSubstr("2 GiB may be used"),
+                             HasSubstr("would fit")));
+}
+
+TEST_F(FuseTool, MemoryHasAUnit) {
+  for (const std::string size : {"500MiB", "0.5GiB", "0.5G", "5e8", "500 MB"}) {
+    const ToolResult run = runTool(
+        folder, "fuse scan mesh.ply --overwrite --resolution 30 --memory '" + size + "' --json out.json");
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("may be used"));
+    const auto json = nlohmann::json::parse(readText(folder / "out.json"));
+    EXPECT_NEAR(json["memory"]["budget_bytes"].get<double>(), 5.2e8, 2.5e7) << size;
+    EXPECT_GT(json["memory"]["estimated_bytes"].get<double>(), 1e7);
+    EXPECT_EQ(json["memory"]["view_window_bytes"], 0);
+  }
+  for (const std::string size : {"much", "-1GiB", "5 elephants", "0"}) {
+    const ToolResult run = runTool(folder, "fuse scan mesh.ply --overwrite --memory '" + size + "'");
+    EXPECT_EQ(run.exit_code, 2) << size;
+    EXPECT_THAT(run.err, HasSubstr("--memory"));
+  }
+}
+
 TEST_F(FuseTool, FusesAScanIntoAClosedMeshAndSaysWhatItDid) {
   const ToolResult run =
       runTool(folder, "fuse scan out.ply --resolution 32 --json out.json --save-grids out.vdb");

@@ -68,7 +68,7 @@ TEST_F(JudgeTool, WritesAFolderThatFuseTakesInPlaceOfJudgingAgain) {
   const auto fuse = nlohmann::json::parse(readText(folder / "fuse.json"));
   EXPECT_EQ(fuse["options"]["judgement"], "judged");
   EXPECT_EQ(fuse["calibration"], json["calibration"]);
-  EXPECT_EQ(fuse["steps"][1]["name"], "read judgement");
+  EXPECT_EQ(fuse["steps"][2]["name"], "read judgement");
 }
 
 TEST_F(JudgeTool, IsTheSameForOneAndTwoThreads) {

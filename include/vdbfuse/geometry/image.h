@@ -15,6 +15,7 @@ namespace vdbfuse {
 template <class T>
 class ImageAllocator {
  public:
+  // The names that std::allocator_traits asks for. NOLINTBEGIN(readability-identifier-naming)
   using value_type = T;
   using propagate_on_container_move_assignment = std::true_type;
   using propagate_on_container_swap = std::true_type;
@@ -30,6 +31,7 @@ class ImageAllocator {
     resource_->deallocate(values, count * sizeof(T), alignof(T));
   }
   ImageAllocator select_on_container_copy_construction() const { return {}; }
+  // NOLINTEND(readability-identifier-naming)
   std::pmr::memory_resource* resource() const { return resource_; }
   bool operator==(const ImageAllocator& other) const { return *resource_ == *other.resource_; }
 

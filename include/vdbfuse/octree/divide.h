@@ -22,8 +22,6 @@ struct CellEvidence {
 struct DivideOptions {
   double lambda = 0.0;         ///< weight of σ in the energy, 1/length
   double max_evidence = 10.0;  ///< CutOptions::max_evidence
-  /// Decided cells are left whole, or divided like all others: the same labels at a higher price.
-  enum class Decided { Keep, Divide } decided = Decided::Keep;
 };
 
 /// Says whether no labelling of minimal energy (eq. 1) can divide a cell, or label it against its evidence,
@@ -39,11 +37,11 @@ struct DivideOptions {
 /// gain or even: S without T is minimal too, and with > strictly better. The same for σ < 0 with the sides
 /// exchanged. For n = 1, the undivided cell, it is the same inequality. So a decided cell has its label in
 /// both graphs, and the rest of the graph sees the same label across the same faces.
-bool isDecided(double side, float weakest_evidence, float support, double lambda);
+bool isDecided(double side, float weakest_evidence, float support, const DivideOptions& options);
 
-/// Cells, not finest and without support, next to one of opposite evidence, also without support: boundaries
-/// of visibility, away from any measurement. Only where it matters: λ |σ| side ≥ ½ with the weaker |σ| of the
-/// two.
+/// Cells, not finest, not decided and without support, next to one of opposite evidence, also without
+/// support: boundaries of visibility, away from any measurement. Only where it matters: λ |σ| side ≥ ½ with
+/// the weaker |σ| of the two.
 std::vector<std::size_t> cellsToDivide(const Octree& octree, const CellTiles& tiles,
                                        const std::vector<float>& support, const CellEvidence& evidence,
                                        const DivideOptions& options);
