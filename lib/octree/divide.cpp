@@ -9,15 +9,16 @@
 namespace vdbfuse {
 namespace {
 
-// Capacities of the cut are rounded to integers.
-constexpr double kFacesOfACube = 6.0, kRounding = 1.01;
+constexpr double kFacesOfACube = 6.0;
+// Between the samples of a cell evidence may be weaker than at any of them.
+constexpr double kSampling = 2.0;
 constexpr double kMatters = 1.0;
 
 }  // namespace
 
 bool isDecided(double side, float weakest_evidence, float support, const DivideOptions& options) {
   const double evidence = std::min<double>(std::abs(weakest_evidence), options.max_evidence);
-  return support == 0.0f && options.lambda * evidence * side >= kRounding * kFacesOfACube;
+  return support == 0.0f && options.lambda * evidence * side >= kSampling * kFacesOfACube;
 }
 
 std::vector<std::size_t> cellsToDivide(const Octree& octree, const CellTiles& tiles,

@@ -57,7 +57,7 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
                                 cut_options.border,
                                 cavities};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
-  result.grids = levelGrids(cells.octree, cells.sigma, "sigma", static_cast<float>(options.evidence.prior));
+  result.grids = levelGrids(cells.octree, cells.sigma, "sigma", kUnknown);
   result.grids.push_back(discontinuityCost(support, options.mu));
   result.grids.push_back(std::move(support));
   result.grids.push_back(std::move(field));

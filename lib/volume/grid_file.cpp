@@ -13,6 +13,9 @@ namespace vdbfuse {
 namespace {
 
 constexpr const char* kCreator = "vdbfuse";
+// Metadata of a field whose inactive voxels are unknown; to tools that do not ask they are 0.
+constexpr const char* kInactive = "inactive";
+constexpr const char* kInactiveUnknown = "unknown";
 
 using LeafNode = openvdb::FloatTree::LeafNodeType;
 
@@ -31,14 +34,15 @@ float bandWidth(const ScalarGrid::Impl& impl) {
 // A copy with active states set, fit for other tools.
 openvdb::FloatGrid::Ptr forDisk(const ScalarGrid::Impl& impl) {
   const bool is_level_set = impl.kind == GridKind::LevelSet;
-  const float background = is_level_set ? bandWidth(impl) : impl.grid->background();
+  const bool has_unknown = !is_level_set && std::isnan(impl.grid->background());
+  const float background = is_level_set ? bandWidth(impl) : has_unknown ? 0.0f : impl.grid->background();
   const auto copy = openvdb::FloatGrid::create(background);
   copy->setTransform(impl.grid->transform().copy());
   for (const LeafNode* leaf : impl.leaves) {
     LeafNode* target = nullptr;
     for (openvdb::Index i = 0; i < LeafNode::SIZE; ++i) {
       const float value = leaf->getValue(i);
-      if (std::isnan(value) || (!is_level_set && value == background)) continue;
+      if (std::isnan(value) || (!is_level_set && !has_unknown && value == background)) continue;
       if (target == nullptr) target = copy->tree().touchLeaf(leaf->origin());
       target->setValueOn(i, value);
     }
@@ -46,6 +50,7 @@ openvdb::FloatGrid::Ptr forDisk(const ScalarGrid::Impl& impl) {
   copy->setName(impl.name);
   copy->setCreator(kCreator);
   copy->setGridClass(is_level_set ? openvdb::GRID_LEVEL_SET : openvdb::GRID_UNKNOWN);
+  if (has_unknown) copy->insertMeta(kInactive, openvdb::StringMetadata(kInactiveUnknown));
   for (const auto& [key, value] : impl.metadata) copy->insertMeta(key, openvdb::StringMetadata(value));
   return copy;
 }
@@ -55,7 +60,8 @@ std::map<std::string, std::string> wordsOf(const openvdb::FloatGrid& grid) {
   std::map<std::string, std::string> words;
   for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry) {
     const std::string& key = entry->first;
-    if (key == "name" || key == "creator" || key == "class" || key.starts_with("file_")) continue;
+    if (key == "name" || key == "creator" || key == "class" || key == kInactive || key.starts_with("file_"))
+      continue;
     words[key] = entry->second->str();
   }
   return words;
@@ -69,7 +75,7 @@ GridFrame frameOf(const std::filesystem::path& path, const openvdb::FloatGrid& g
   return {grid.voxelSize()[0], {origin.x(), origin.y(), origin.z()}};
 }
 
-// Voxels of a level set that are off hold no distance.
+// Voxels that are off hold nothing.
 void markUnknown(ScalarGrid::Impl& impl) {
   impl.grid->tree().root().setBackground(kUnknown, /*updateChildNodes=*/true);
   for (LeafNode* leaf : impl.leaves) {
@@ -141,6 +147,9 @@ ScalarGrid readGrid(const std::filesystem::path& path, const std::string& name) 
   result.metadata() = wordsOf(*grid);
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
     result.setKind(GridKind::LevelSet);
+    markUnknown(result.impl());
+  } else if (const auto inactive = grid->getMetadata<openvdb::StringMetadata>(kInactive);
+             inactive && inactive->value() == kInactiveUnknown) {
     markUnknown(result.impl());
   }
   return result;

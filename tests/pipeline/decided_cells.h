@@ -62,6 +62,8 @@ inline DecidedCells solveBothWays(const JudgedScan& scan, const ReconstructOptio
 
   CellEvidence evidence(cells.octree.cellCount());
   evaluateCells(judged, cells.octree, evidence_options, evidence);
+  // The very numbers of the other solution: points in other company may fall to another pixel.
+  evidence.mean = cells.sigma;
   std::vector<bool> decided(cells.octree.cellCount());
   for (std::size_t c = 0; c < decided.size(); ++c) {
     const double side = cells.octree.side(c) * frame.voxel;

@@ -90,6 +90,28 @@ TEST(RenderTool, DrawsASliceOfAGridWithItsZeroLine) {
   EXPECT_GT(outside[2], outside[0]);  // blue
 }
 
+TEST(RenderTool, DrawsTheCellsOfAllLevels) {
+  const TemporaryFolder folder;
+  ScalarGrid fine("sigma", {1.0}, kUnknown, {{0, 0, 0}});
+  std::fill(fine.leaf(0).values.begin(), fine.leaf(0).values.end(), 1.0f);
+  // Beside it one cell of eight voxels a side.
+  ScalarGrid coarse("sigma_level3", {8.0, {3.5, 3.5, 3.5}}, kUnknown, {{0, 0, 0}});
+  coarse.leaf(0).at(1, 0, 0) = 1.0f;
+  writeGrids(folder / "g.vdb", {&fine, &coarse});
+  const std::string slice = "render g.vdb out.png --slice z=4 --size 160x80 --overwrite";
+  ASSERT_EQ(runTool(folder, slice).exit_code, 0);
+  const Image<Rgb8> plain = readPngRgb(folder / "out.png");
+  ASSERT_EQ(runTool(folder, slice + " --cells").exit_code, 0);
+  const Image<Rgb8> picture = readPngRgb(folder / "out.png");
+  const auto lines = [&](int begin, int end) {
+    int count = 0;
+    for (int x = begin; x < end; ++x) count += picture(x, 35) != plain(x, 35);
+    return count;
+  };
+  EXPECT_EQ(lines(0, 80), 8);  // seven between eight voxels, and one to the coarse cell
+  EXPECT_EQ(lines(80, 160), 0);
+}
+
 TEST(RenderTool, ASliceNeedsAPlaneAndAGridThatIsThere) {
   const TemporaryFolder folder;
   ScalarGrid grid("rho", {0.1}, 1.0f, {{0, 0, 0}});

@@ -77,6 +77,24 @@ TEST(GridFile, UnknownVoxelsOfALevelSetStayUnknownAndKnownOnesKnown) {
   EXPECT_TRUE(std::isnan(again.at({0, 0, 3})));
 }
 
+TEST(GridFile, AFieldWithUnknownVoxelsKeepsItsZerosAndTheyStayUnknown) {
+  const TemporaryFolder folder;
+  ScalarGrid field("sigma", {0.5}, kUnknown, {{0, 0, 0}, {8, 0, 0}});
+  field.leaf(0).at(1, 2, 3) = 0.0f, field.leaf(1).at(4, 5, 6) = -2.5f;
+  writeGrids(folder / "f.vdb", {&field});
+  const ScalarGrid back = readGrid(folder / "f.vdb");
+  EXPECT_EQ(back.at({1, 2, 3}), 0.0f);
+  EXPECT_EQ(back.at({12, 5, 6}), -2.5f);
+  EXPECT_TRUE(std::isnan(back.at({1, 2, 4})));
+  EXPECT_TRUE(std::isnan(back.at({100, 0, 0})));
+  // Other tools see no number that is none.
+  openvdb::io::File file((folder / "f.vdb").string());
+  file.open();
+  const auto plain = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("sigma"));
+  EXPECT_EQ(plain->background(), 0.0f);
+  EXPECT_EQ(plain->activeVoxelCount(), 2u);
+}
+
 TEST(GridFile, PlainOpenVdbSeesWhatAFieldIs) {
   const TemporaryFolder folder;
   const ScalarGrid field = someField();

@@ -27,7 +27,7 @@ struct Request {
   fs::path input, output, reference;
   std::string from, size = "800x600", color = "shaded", up = "z", slice, grid;
   std::vector<double> eye, look, range;
-  bool flat = false, overwrite = false;
+  bool flat = false, cells = false, overwrite = false;
   int threads = 0;
   int width = 0, height = 0;  // 0: that of the view of --from
 };
@@ -91,7 +91,8 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
 
 SliceRequest sliceRequest(const Request& request) {
   if (request.slice.empty()) throw InvalidArgument("--slice", "is required to draw a grid, as --slice z=0");
-  SliceRequest slice{request.input, request.slice, request.grid, std::max(request.width, request.height)};
+  SliceRequest slice{request.input, request.slice, request.grid, std::max(request.width, request.height),
+                     request.cells};
   if (!request.range.empty()) slice.low = request.range[0], slice.high = request.range[1];
   return slice;
 }
@@ -145,6 +146,7 @@ void addRender(CLI::App& app, Action& action) {
       ->expected(2)
       ->type_name("low,high");
   command->add_option("--slice", request->slice, "plane to draw of a .vdb file")->type_name("x|y|z=VALUE");
+  command->add_flag("--cells", request->cells, "with --slice: lines between the cells of all levels");
   command->add_option("--grid", request->grid, "grid of the .vdb file (default: the first)");
   command->add_flag("--flat", request->flat, "show every triangle as it is");
   auto* size =

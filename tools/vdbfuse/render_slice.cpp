@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -62,13 +63,46 @@ Box boxOf(const std::vector<ScalarGrid>& levels) {
   return box;
 }
 
-double finestKnown(const std::vector<ScalarGrid>& levels, const Eigen::Vector3d& point) {
-  for (const ScalarGrid& grid : levels) {
-    const Index3 voxel = (grid.frame().toIndex(point).array() + 0.5).floor().cast<int>();
-    const float value = grid.at(voxel);
-    if (isKnown(grid, value)) return value;
+// What a point of the slice lies in.
+struct Cell {
+  std::size_t level = 0;
+  Index3 voxel = Index3::Zero();
+  float value = std::numeric_limits<float>::quiet_NaN();
+};
+
+Cell finestKnown(const std::vector<ScalarGrid>& levels, const Eigen::Vector3d& point) {
+  Cell cell;
+  for (; cell.level < levels.size(); ++cell.level) {
+    const ScalarGrid& grid = levels[cell.level];
+    cell.voxel = (grid.frame().toIndex(point).array() + 0.5).floor().cast<int>();
+    const float value = grid.at(cell.voxel);
+    if (!isKnown(grid, value)) continue;
+    cell.value = value;
+    break;
   }
-  return std::numeric_limits<double>::quiet_NaN();
+  return cell;
+}
+
+// A number for each cell, so that neighbours have different ones, exact in a float.
+double numberOf(const Cell& cell) {
+  std::uint64_t number = cell.level;
+  for (int a = 0; a < 3; ++a)
+    number = number * 0x9e3779b97f4a7c15ULL + static_cast<std::uint32_t>(cell.voxel[a]);
+  return static_cast<double>((number ^ number >> 32) & 0xffffff);
+}
+
+// Lines between cells, like Fig. 3 of the paper.
+void drawCells(const Image<float>& numbers, Image<Rgb8>& picture) {
+  const auto darken = [](Rgb8& pixel) {
+    for (std::uint8_t& channel : pixel) channel = static_cast<std::uint8_t>(channel * 2 / 5);
+  };
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const bool right = x + 1 < picture.width() && numbers(x, y) != numbers(x + 1, y);
+      const bool below = y + 1 < picture.height() && numbers(x, y) != numbers(x, y + 1);
+      if (right || below) darken(picture(x, y));
+    }
+  }
 }
 
 }  // namespace
@@ -78,12 +112,17 @@ Image<Rgb8> renderSlice(const SliceRequest& request) {
   const std::vector<ScalarGrid> levels = readLevels(request);
   const Box box = boxOf(levels);
   if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
-  const auto field = [&](const Eigen::Vector3d& point) { return finestKnown(levels, point); };
+  const auto field = [&](const Eigen::Vector3d& point) { return finestKnown(levels, point).value; };
   const std::string& name = levels.front().name();
   SliceOptions options;
   if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
   options.low = request.low, options.high = request.high;
-  return drawSlice(sampleSlice(field, box, plane, request.longest), options);
+  Image<Rgb8> picture = drawSlice(sampleSlice(field, box, plane, request.longest), options);
+  if (request.cells) {
+    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(finestKnown(levels, point)); };
+    drawCells(sampleSlice(number, box, plane, request.longest), picture);
+  }
+  return picture;
 }
 
 }  // namespace vdbfuse::tool

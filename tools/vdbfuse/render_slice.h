@@ -13,6 +13,7 @@ struct SliceRequest {
   std::string plane;           ///< x=VALUE, y=VALUE or z=VALUE, world units
   std::string grid;            ///< name; empty: the first in the file
   int longest = 800;           ///< pixels along the longer side
+  bool cells = false;          ///< lines between the cells as well
   double low = 0, high = 0;    ///< values at the ends of the colours; equal: from the data
 };
 

@@ -85,8 +85,9 @@ class ScalarGrid {
 inline Index3 leafOrigin(const Index3& voxel) { return {voxel.x() & ~7, voxel.y() & ~7, voxel.z() & ~7}; }
 
 /// Writes grids into one .vdb file. Unknown voxels become inactive; in a field those equal to the background
-/// do, too. The background of a level set on disk is its largest distance. Throws IoError; leaves an existing
-/// file as it was when it fails.
+/// do, too, and where the background itself is unknown it is 0 on disk, with a word in the metadata. The
+/// background of a level set on disk is its largest distance. Throws IoError; leaves an existing file as it
+/// was when it fails.
 void writeGrids(const std::filesystem::path& path, const std::vector<const ScalarGrid*>& grids);
 
 /// Reads a float grid by name, or the first one when `name` is empty, with its metadata. Inactive voxels hold
