@@ -42,16 +42,25 @@ std::vector<std::size_t> cellsWithSensors(const Octree& octree, const std::vecto
   return cells;
 }
 
+Components componentsOf(const CellTiles& tiles, const std::vector<CellLabel>& labels, CellLabel label) {
+  Components components(labels.size());
+  forEachFace(tiles, [&](const CellFace& face) {
+    if (labels[face.first] == label && labels[face.second] == label) components.join(face.first, face.second);
+  });
+  return components;
+}
+
+double volumeOf(const Octree& octree, std::size_t cell) {
+  return std::pow(octree.side(cell) * octree.frame.voxel, 3);
+}
+
 }  // namespace
 
 CavityReport fillUnseenCavities(const Octree& octree, const CellTiles& tiles,
                                 const std::vector<Eigen::Vector3d>& sensors, Border border,
                                 std::vector<CellLabel>& labels) {
-  Components components(labels.size());
+  Components components = componentsOf(tiles, labels, CellLabel::Outside);
   const auto empty = [&](std::size_t cell) { return labels[cell] == CellLabel::Outside; };
-  forEachFace(tiles, [&](const CellFace& face) {
-    if (empty(face.first) && empty(face.second)) components.join(face.first, face.second);
-  });
   const std::vector<std::size_t> sensor_cells = cellsWithSensors(octree, sensors);
   const bool border_is_open = border != Border::Solid || sensor_cells.empty();
   std::vector<bool> open(labels.size(), false);
@@ -68,10 +77,33 @@ CavityReport fillUnseenCavities(const Octree& octree, const CellTiles& tiles,
     const std::uint32_t root = components.find(static_cast<std::uint32_t>(c));
     if (!empty(c) || open[root]) continue;
     report.filled += root == c;
-    report.volume += std::pow(octree.side(c) * octree.frame.voxel, 3);
+    report.volume += volumeOf(octree, c);
     closed.push_back(c);
   }
   for (const std::size_t c : closed) labels[c] = CellLabel::Inside;
+  return report;
+}
+
+SpeckReport removeSpecks(const Octree& octree, const CellTiles& tiles, double least_volume, Border border,
+                         std::vector<CellLabel>& labels) {
+  Components components = componentsOf(tiles, labels, CellLabel::Inside);
+  std::vector<double> volumes(labels.size(), 0.0);  // of the component, at its root
+  for (std::size_t c = 0; c < labels.size(); ++c) {
+    if (labels[c] != CellLabel::Inside) continue;
+    double& volume = volumes[components.find(static_cast<std::uint32_t>(c))];
+    volume += volumeOf(octree, c);
+    if (border != Border::Outside && touchesBorder(octree, c)) volume += least_volume;
+  }
+  SpeckReport report;
+  std::vector<std::size_t> specks;
+  for (std::size_t c = 0; c < labels.size(); ++c) {
+    const std::uint32_t root = components.find(static_cast<std::uint32_t>(c));
+    if (labels[c] != CellLabel::Inside || volumes[root] >= least_volume) continue;
+    report.removed += root == c;
+    report.volume += volumeOf(octree, c);
+    specks.push_back(c);
+  }
+  for (const std::size_t c : specks) labels[c] = CellLabel::Outside;
   return report;
 }
 

@@ -35,6 +35,8 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   timer.start("cut");
   Labelling cut =
       cutCells(cells.octree, cells.tiles, cells.support, cells.sigma, cut_options, progress);  // (1)
+  const SpeckReport specks = removeSpecks(
+      cells.octree, cells.tiles, std::pow(result.calibration.noise_scale, 3), cut_options.border, cut.labels);
   const CavityReport cavities =
       fillUnseenCavities(cells.octree, cells.tiles, sensorPositions(judged), cut_options.border, cut.labels);
 
@@ -55,7 +57,8 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
                                 cut_options.lambda,
                                 evidence_options.thickness,
                                 cut_options.border,
-                                cavities};
+                                cavities,
+                                specks};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids = levelGrids(cells.octree, cells.sigma, "sigma", kUnknown);
   result.grids.push_back(discontinuityCost(support, options.mu));

@@ -318,6 +318,28 @@ TEST(FillUnseenCavities, InARoomOnlyWhatASensorSeesIsEmpty) {
   EXPECT_EQ(other.solid(), 27u);
 }
 
+TEST(RemoveSpecks, WhatIsSmallerGoesAndWhatIsNotStays) {
+  Shell shell;
+  shell.at({6, 6, 6}) = CellLabel::Inside;  // two voxels of 0.125 together
+  shell.at({6, 6, 7}) = CellLabel::Inside;
+  Shell before = shell;
+  const SpeckReport none = removeSpecks(shell.octree, shell.tiles, 0.25, Border::Outside, shell.labels);
+  EXPECT_EQ(none.removed, 0u);
+  EXPECT_EQ(shell.labels, before.labels);
+  const SpeckReport one = removeSpecks(shell.octree, shell.tiles, 0.26, Border::Outside, shell.labels);
+  EXPECT_EQ(one.removed, 1u);
+  EXPECT_DOUBLE_EQ(one.volume, 0.25);
+  EXPECT_EQ(shell.solid(), 26u);
+}
+
+TEST(RemoveSpecks, WhatMayGoOnBeyondTheBorderStays) {
+  for (const Border border : {Border::Solid, Border::Free}) {
+    Shell shell;
+    shell.at({6, 6, 7}) = CellLabel::Inside;
+    EXPECT_EQ(removeSpecks(shell.octree, shell.tiles, 1, border, shell.labels).removed, 0u);
+  }
+}
+
 TEST(SampleCells, IsTheMeanOverTheVoxelsOfACellOfWhatReachesTheThreshold) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Octree octree = randomOctree(seed, 40, 4).octree;

@@ -124,7 +124,9 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
                 {"nodes", result.cut->nodes},
                 {"arcs", result.cut->arcs},
                 {"cavities_filled", result.cut->cavities.filled},
-                {"cavities_volume", result.cut->cavities.volume}};
+                {"cavities_volume", result.cut->cavities.volume},
+                {"specks_removed", result.cut->specks.removed},
+                {"specks_volume", result.cut->specks.volume}};
   }
   j["mesh"] = meshJson(result, context.topology);
   j["steps"] = stepsJson(result.steps);

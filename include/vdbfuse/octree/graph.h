@@ -66,6 +66,17 @@ CavityReport fillUnseenCavities(const Octree& octree, const CellTiles& tiles,
                                 const std::vector<Eigen::Vector3d>& sensors, Border border,
                                 std::vector<CellLabel>& labels);
 
+struct SpeckReport {
+  std::size_t removed = 0;  ///< components
+  double volume = 0;        ///< their volume, length³
+};
+
+/// Turns solid components smaller than `least_volume` (length³) into empty ones, unless they touch a border
+/// beyond which there is matter, or nothing is said. Where voxels are smaller than the noise, the cut finds
+/// single voxels of the other sign within it; nothing of that size can be told from noise.
+SpeckReport removeSpecks(const Octree& octree, const CellTiles& tiles, double least_volume, Border border,
+                         std::vector<CellLabel>& labels);
+
 /// Value of a finest grid at each cell: the voxel's own at a finest cell, in coarser ones the mean of what
 /// reaches `threshold` over all of their voxels, the others being 0.
 std::vector<float> sampleCells(const Octree& octree, const ScalarGrid& grid, float threshold);

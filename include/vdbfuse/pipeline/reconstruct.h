@@ -100,6 +100,7 @@ struct CutReportSummary {
   double thickness = 0;  ///< EvidenceOptions::thickness; 0: off
   Border border = Border::Outside;
   CavityReport cavities;
+  SpeckReport specks;  ///< smaller than a cube of the noise
 };
 
 struct MemoryReport {
