@@ -16,12 +16,53 @@ struct SolvedCells {
   std::vector<CellLabel> labels;
 };
 
+/// How far the mean over a coarse cell's samples is from that over all of its voxels, evidence clamped as the
+/// cut does.
+struct SamplingError {
+  double rms = 0, quantile99 = 0;
+  double other_sign_share = 0;  ///< of the cells
+};
+
+/// From about `count` cells, spread evenly over those of levels 1 … 4.
+inline SamplingError samplingError(const JudgedViews& judged, const Octree& octree,
+                                   const std::vector<float>& sigma, const EvidenceOptions& options,
+                                   double most, std::size_t count = 4000) {
+  std::vector<std::size_t> coarse;
+  for (std::size_t c = 0; c < octree.cellCount(); ++c)
+    if (octree.levels[c] >= 1 && octree.levels[c] <= 4) coarse.push_back(c);
+  std::vector<double> errors;
+  SamplingError result;
+  for (std::size_t i = 0; i < coarse.size(); i += coarse.size() / count + 1) {
+    const std::size_t c = coarse[i];
+    std::vector<Eigen::Vector3d> voxels;
+    const int side = octree.side(c);
+    for (int k = 0; k < side * side * side; ++k)
+      voxels.push_back(octree.frame.toWorld(
+          Index3(octree.lowest(c) + Index3(k % side, k / side % side, k / side / side))));
+    double mean = 0;
+    for (const float e : evidenceAt(judged, voxels, options)) mean += std::clamp<double>(e, -most, most);
+    mean /= static_cast<double>(voxels.size());
+    const double sampled = std::clamp<double>(sigma[c], -most, most);
+    errors.push_back(std::abs(sampled - mean));
+    result.rms += errors.back() * errors.back();
+    result.other_sign_share += (sampled > 0) != (mean > 0);
+  }
+  if (errors.empty()) return result;
+  const auto total = static_cast<double>(errors.size());
+  result.rms = std::sqrt(result.rms / total), result.other_sign_share /= total;
+  const auto nth = errors.begin() + static_cast<std::ptrdiff_t>(0.99 * (total - 1));
+  std::nth_element(errors.begin(), nth, errors.end());
+  result.quantile99 = *nth;
+  return result;
+}
+
 /// Both solutions of one scan.
 struct DecidedCells {
   SolvedCells whole, divided;
   std::size_t decided = 0;       ///< cells
   std::size_t other_labels = 0;  ///< finest voxels whose labels differ: should be 0
   double decided_volume_share = 0;
+  SamplingError sampling;
 };
 
 /// Of these cells those that can be divided so that grading divides no others.
@@ -72,6 +113,8 @@ inline DecidedCells solveBothWays(const JudgedScan& scan, const ReconstructOptio
     result.decided_volume_share += decided[c] ? side * side * side : 0;
   }
   result.decided_volume_share /= std::pow(frame.voxel, 3) * cells.octree.size.cast<double>().prod();
+
+  result.sampling = samplingError(judged, cells.octree, cells.sigma, evidence_options, cut.max_evidence);
 
   Octree octree = cells.octree;
   for (;;) {
