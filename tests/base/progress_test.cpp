@@ -69,6 +69,11 @@ TEST(StepTimer, StepsComeBackInOrderWithTheirTimes) {
   EXPECT_GE(steps[0].cpu_seconds, 0);
 }
 
+TEST(AvailableMemory, IsMoreThanNothingAndLessThanAnyMachineHas) {
+  EXPECT_GT(availableMemoryBytes(), std::size_t{16} << 20);
+  EXPECT_LT(availableMemoryBytes(), std::size_t{1} << 50);
+}
+
 TEST(PeakMemory, GrowsWithWhatIsTouched) {
   const std::size_t before = peakMemoryBytes();
   const std::vector<char> block(64u << 20, 1);

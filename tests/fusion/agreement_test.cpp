@@ -5,6 +5,7 @@
 
 #include "fusion/scenes.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/geometry/projector.h"
 
 namespace vdbfuse {
 namespace {
@@ -35,6 +36,52 @@ TEST(CountAgreement, CountsTheViewsThatSeeASurfaceEachAtMostOnce) {
   EXPECT_LT(largest, 10);
   EXPECT_GT(largest, 4);
   EXPECT_GT(smallest_on_surface, 2);
+}
+
+// Equation (3) as agreement.h has it, a voxel and a view at a time.
+double countDirectly(const JudgedViews& judged, const Eigen::Vector3d& point, double voxel) {
+  double count = 0;
+  for (const JudgedView& view : judged.views) {
+    const auto seen = Projector(view.projection, view.world_from_camera)(point);
+    if (!seen || view.depth(seen->x, seen->y) == kInvalidDepth) continue;
+    const double depth = view.depth(seen->x, seen->y);
+    const double r =
+        std::abs(depth - seen->depth) / std::max(voxel, lookupNoise(judged.sensor, view.projection, depth));
+    if (r <= 2) count += view.weight * (1 - view.outlier(seen->x, seen->y)) * std::exp(-r * r);
+  }
+  return count;
+}
+
+TEST(CountAgreement, IsTheSumOfTheKernelsOfAllViews) {
+  JudgedViews judged = sphere();
+  Random random(8);
+  for (JudgedView& view : judged.views) {
+    view.weight = random.uniform(0.2, 1);
+    for (float& e : view.outlier) e = static_cast<float>(random.uniform(0, 0.45));
+  }
+  JudgedViews with_alternatives = judged;  // another path: of which none is believed
+  for (JudgedView& view : with_alternatives.views)
+    view.alternatives.push_back({Image<float>(64, 64, 1.0f), Image<float>(64, 64, 0.0f)});
+  for (const double voxel : {0.03, 0.004}) {  // above and below the noise
+    const ScalarGrid support = countAgreement(judged, {voxel}, kDomain);
+    const ScalarGrid other = countAgreement(with_alternatives, {voxel}, kDomain);
+    ASSERT_EQ(other.leafCount(), support.leafCount());
+    std::size_t compared = 0, off = 0;
+    for (std::size_t i = 0; i < support.leafCount(); i += 1 + support.leafCount() / 40) {
+      for (int k = 0; k < ScalarGrid::kLeafSize; k += 5) {
+        const ScalarGrid::Leaf leaf = support.leaf(i);
+        const float count = leaf.values[static_cast<std::size_t>(k)];
+        const Eigen::Vector3d point =
+            support.frame().toWorld(Index3(leaf.origin + Index3(k / 64, k / 8 % 8, k % 8)));
+        // Points on the border between two pixels may be given to either.
+        off += std::abs(count - countDirectly(judged, point, voxel)) > 0.002 ||
+               std::abs(count - other.leaf(i).values[static_cast<std::size_t>(k)]) > 0.002;
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 2000u);
+    EXPECT_LE(off, compared / 200) << voxel;
+  }
 }
 
 TEST(CountAgreement, DoubtAndWeightScaleTheCount) {
