@@ -49,16 +49,25 @@ Pixels countPixels(const ViewSequence& views, const std::vector<int>& reduction)
   return pixels;
 }
 
-// Finest cells: the ridge of the support, two voxels around, and what rounding to pairs of voxels costs.
-double expectedCells(const Survey& survey, double voxel, const ReconstructOptions& options) {
+// Voxels of the leaves that a truncated distance touches. No pixel is too doubtful for it: strays fill leaves
+// of their own, eight or so each, until all of the domain is full.
+double expectedTsdfVoxels(const Survey& survey, double voxel, double pixels, double truncation) {
+  constexpr double kLeafSide = 8, kLeavesPerStray = 8;
   const double volume = survey.domain.volume() / std::pow(voxel, 3);
-  if (options.method == Method::Tsdf) {
-    const double truncation = options.truncation > 0 ? options.truncation : 4 * voxel;
-    return std::min(survey.area * (2 * truncation + 8 * voxel) / std::pow(voxel, 3), volume);
-  }
+  const double surface = survey.area * (2 * truncation + kLeafSide * voxel) / std::pow(voxel, 3);
+  const double leaves = volume / std::pow(kLeafSide, 3);
+  const double touched = leaves * -std::expm1(-kLeavesPerStray * survey.stray_share * pixels / leaves);
+  return std::min(surface + touched * std::pow(kLeafSide, 3), volume);
+}
+
+// Finest cells: the ridge of the support, two voxels around, and what rounding to pairs of voxels costs.
+double expectedCells(const Survey& survey, double voxel, double pixels, const ReconstructOptions& options) {
+  if (options.method == Method::Tsdf)
+    return expectedTsdfVoxels(survey, voxel, pixels, options.truncation > 0 ? options.truncation : 4 * voxel);
   constexpr double kRidge = 0.83, kSupported = 1.6, kAround = 5.5;
   const double half_width = voxel < survey.noise_scale ? kRidge * survey.noise_scale : kSupported * voxel;
   const double layers = 2 * half_width / voxel + kAround;
+  const double volume = survey.domain.volume() / std::pow(voxel, 3);
   return kCellsPerFinest * std::min(survey.area / (voxel * voxel) * layers, volume);
 }
 
@@ -102,7 +111,8 @@ bool decideMemory(const Pixels& pixels, double grid, ScanPlan& plan) {
 double fittingVoxel(const ViewSequence& views, const ReconstructOptions& options, ScanPlan plan) {
   const Pixels pixels = countPixels(views, plan.reduction);
   const auto fits = [&](double voxel) {
-    return decideMemory(pixels, gridBytes(expectedCells(*plan.survey, voxel, options), options.method), plan);
+    return decideMemory(
+        pixels, gridBytes(expectedCells(*plan.survey, voxel, pixels.all, options), options.method), plan);
   };
   double low = plan.voxel, high = plan.survey->domain.sizes().maxCoeff();
   if (!fits(high)) return 0;
@@ -150,9 +160,9 @@ ScanPlan planReconstruction(const ViewSequence& views, const ReconstructOptions&
   expected.noise_scale = survey.noise_scale, expected.point_spacing = survey.point_spacing;
   plan.voxel = chooseFrame(survey.domain, expected, options).voxel;
   if (options.voxel > 0 || options.resolution > 0) plan.reduction = reductions(views, survey, plan.voxel);
-  plan.cells = expectedCells(survey, plan.voxel, options);
-  if (decideMemory(countPixels(views, plan.reduction), gridBytes(plan.cells, options.method), plan))
-    return plan;
+  const Pixels pixels = countPixels(views, plan.reduction);
+  plan.cells = expectedCells(survey, plan.voxel, pixels.all, options);
+  if (decideMemory(pixels, gridBytes(plan.cells, options.method), plan)) return plan;
   const double fitting = fittingVoxel(views, options, plan);
   char voxels[64];
   std::snprintf(voxels, sizeof voxels, "%.4g needs about ", plan.voxel);

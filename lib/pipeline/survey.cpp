@@ -41,16 +41,27 @@ SmallViews loadSmall(const ViewSequence& sequence, const Progress& progress) {
   return small;
 }
 
-// Reliable points, of which each covers a square of the surface.
-std::vector<Eigen::Vector3d> reliablePoints(const Judgement& judgement) {
-  std::vector<Eigen::Vector3d> points;
+struct Points {
+  std::vector<Eigen::Vector3d> reliable;  // in the domain
+  std::size_t stray = 0;                  // the others in it
+  std::size_t pixels = 0;
+};
+
+Points pointsOf(const Judgement& judgement) {
+  Points points;
   for (const JudgedView& view : judgement.judged.views) {
+    points.pixels += view.depth.size();
     for (int y = 0; y < view.depth.height(); ++y) {
       for (int x = 0; x < view.depth.width(); ++x) {
-        if (view.depth(x, y) == kInvalidDepth || view.outlier(x, y) > kDoubtful) continue;
+        if (view.depth(x, y) == kInvalidDepth) continue;
         const Eigen::Vector3d point =
             view.world_from_camera * unproject(view.projection, x, y, view.depth(x, y));
-        if (judgement.domain.contains(point)) points.push_back(point);
+        if (!judgement.domain.contains(point)) continue;
+        if (view.outlier(x, y) > kDoubtful) {
+          ++points.stray;
+        } else {
+          points.reliable.push_back(point);
+        }
       }
     }
   }
@@ -98,7 +109,9 @@ std::optional<Survey> surveyScan(const ViewSequence& sequence, const Reconstruct
   survey.point_spacing = report.point_spacing / small.factor;
   const double side = std::max(
       {3 * report.point_spacing, 4 * report.noise_scale, survey.domain.sizes().maxCoeff() / (1 << 20)});
-  survey.area = measuredArea(reliablePoints(judgement), survey.domain, side, report.noise_scale);
+  const Points points = pointsOf(judgement);
+  survey.area = measuredArea(points.reliable, survey.domain, side, report.noise_scale);
+  survey.stray_share = static_cast<double>(points.stray) / static_cast<double>(points.pixels);
   return survey;
 }
 

@@ -16,6 +16,7 @@ namespace vdbfuse {
 struct Survey {
   Box domain;              ///< the one given, or where the views looked at agree
   double area = 0;         ///< of the measured surfaces in the domain, length²
+  double stray_share = 0;  ///< share of all pixels that measured something in the domain and are not believed
   double noise_scale = 0;  ///< at the median depth
   double median_depth = 0;
   double point_spacing = 0;  ///< of neighbouring measurements of the full images, length
