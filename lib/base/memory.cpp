@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -49,6 +50,13 @@ std::size_t peakMemoryBytes() {
   rusage usage{};
   if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string sizeText(std::size_t bytes) {
+  const double mib = static_cast<double>(bytes) / 0x1p20;
+  char text[32];
+  std::snprintf(text, sizeof text, mib < 1024 ? "%.0f MiB" : "%.3g GiB", mib < 1024 ? mib : mib / 1024);
+  return text;
 }
 
 }  // namespace vdbfuse

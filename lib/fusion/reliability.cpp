@@ -100,7 +100,7 @@ ConfidenceDirection confidenceDirection(const ReliabilityModel& model) {
 Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGraph& graph,
                 const JudgeOptions& options, const Progress& progress) {
   const std::size_t count = views.size();
-  for (View& view : views) applyMask(view.map);
+  forEachView(views, [](View& view) { applyMask(view.map); });
   const ConfidenceBins bins(views);
   const std::vector<Image<std::uint8_t>> confidence = bins.replace(views);
   std::vector<std::vector<std::size_t>> neighbours = chooseNeighbours(graph, count, options.neighbours);
@@ -133,8 +133,12 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     table = learnReliability(testimonies, confidence);
     setOutliers(testimonies, confidence, table, judged.views);
   }
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count; ++i) {
     weighAlternatives(alternatives, i, testimonies, confidence[i], table, surfaces, judged.views[i]);
+    letGo(judged.views[i]), letGo(confidence[i]);
+    for (const std::size_t layer : alternatives.of()[i])
+      letGo(testimonies.views[layer]), letGo(surfaces[layer]);
+  }
   result.model = modelOf(table, bins);
   return result;
 }

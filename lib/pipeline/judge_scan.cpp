@@ -15,6 +15,7 @@ JudgedScan judgeScan(const ViewSequence& sequence, const ReconstructOptions& opt
   requireUsable(sequence, options);
   JudgedScan scan;
   scan.plan = std::move(plan);
+  scan.steps = scan.plan.steps;
   StepTimer timer;
 
   timer.start("load");
@@ -28,7 +29,7 @@ JudgedScan judgeScan(const ViewSequence& sequence, const ReconstructOptions& opt
   timer.start("judge");
   scan.judgement =
       judgeViews(std::move(views), sensor, graph, options, scan.calibration, progress);  // ε, w, domain
-  scan.steps = timer.finish();
+  for (StepTime& timed : timer.finish()) scan.steps.push_back(std::move(timed));
   return scan;
 }
 

@@ -105,6 +105,7 @@ JudgedScan readJudgement(const fs::path& folder, const ViewSequence& sequence, S
   StepTimer timer;
   timer.start("load");
   scan.plan = std::move(plan);
+  scan.steps = scan.plan.steps;
   scan.plan.reduction.assign(sequence.size(), 1);  // pixels were judged as they are
   std::vector<View> views = loadViews(sequence, scan, progress);
 
@@ -127,7 +128,7 @@ JudgedScan readJudgement(const fs::path& folder, const ViewSequence& sequence, S
   scan.calibration = read.calibration;
   scan.judgement.model = std::move(read.model);
   scan.judgement.domain = read.domain;
-  scan.steps = timer.finish();
+  for (StepTime& timed : timer.finish()) scan.steps.push_back(std::move(timed));
   return scan;
 }
 

@@ -83,13 +83,6 @@ std::size_t budgetOf(const ReconstructOptions& options) {
   return static_cast<std::size_t>(kShareOfFree * static_cast<double>(availableMemoryBytes()));
 }
 
-std::string sizeText(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, bytes < 1024 * kMiB ? "%.0f MiB" : "%.3g GiB",
-                bytes < 1024 * kMiB ? bytes / kMiB : bytes / (1024 * kMiB));
-  return text;
-}
-
 // Memory at the peak, and how views are kept, when the cells need `grid` bytes. Nothing when it does not fit.
 bool decideMemory(const Pixels& pixels, double grid, ScanPlan& plan) {
   const auto budget = static_cast<double>(plan.memory_budget);
@@ -140,9 +133,9 @@ ScanPlan planJudging(const ViewSequence& views, const ReconstructOptions& option
   plan.reduction.assign(views.size(), 1);
   const Pixels pixels = countPixels(views, plan.reduction);
   if (!decideMemory(pixels, 0, plan)) {
-    throw InvalidArgument("memory", "judging needs " + sizeText(static_cast<double>(plan.estimated_memory)) +
-                                        " for a few views at a time, " +
-                                        sizeText(static_cast<double>(plan.memory_budget)) + " may be used");
+    throw InvalidArgument("memory", "judging needs " + sizeText(plan.estimated_memory) +
+                                        " for a few views at a time, " + sizeText(plan.memory_budget) +
+                                        " may be used");
   }
   return plan;
 }
@@ -150,11 +143,15 @@ ScanPlan planJudging(const ViewSequence& views, const ReconstructOptions& option
 ScanPlan planReconstruction(const ViewSequence& views, const ReconstructOptions& options,
                             const Progress& progress) {
   requireUsable(views, options);
-  ScanPlan plan;
+  StepTimer timer;
+  timer.start("plan");
+  std::optional<Survey> found = surveyScan(views, options, progress);
+  ScanPlan plan = found ? ScanPlan() : planJudging(views, options);
+  plan.steps = timer.finish();
+  if (!found) return plan;
   plan.memory_budget = budgetOf(options);
   plan.reduction.assign(views.size(), 1);
-  plan.survey = surveyScan(views, options, progress);
-  if (!plan.survey) return planJudging(views, options);
+  plan.survey = std::move(found);
   const Survey& survey = *plan.survey;
   CalibrationReport expected;
   expected.noise_scale = survey.noise_scale, expected.point_spacing = survey.point_spacing;
@@ -168,10 +165,10 @@ ScanPlan planReconstruction(const ViewSequence& views, const ReconstructOptions&
   std::snprintf(voxels, sizeof voxels, "%.4g needs about ", plan.voxel);
   char advice[64];
   std::snprintf(advice, sizeof advice, "; %.4g would fit", fitting);
-  throw InvalidArgument("voxel",
-                        voxels + sizeText(static_cast<double>(plan.estimated_memory)) + " of memory, " +
-                            sizeText(static_cast<double>(plan.memory_budget)) + " may be used" +
-                            (fitting > 0 ? advice : "; not even a few views at a time fit into that"));
+  throw InvalidArgument(
+      "voxel", voxels + sizeText(plan.estimated_memory) + " of memory, " + sizeText(plan.memory_budget) +
+                   " may be used" +
+                   (fitting > 0 ? advice : "; not even a few views at a time fit into that"));
 }
 
 }  // namespace vdbfuse

@@ -87,13 +87,8 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
 
 Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& options,
                            const Progress& progress) {
-  StepTimer timer;
-  timer.start("plan");
   ScanPlan plan = planReconstruction(views, options, progress);
-  std::vector<StepTime> steps = timer.finish();
-  JudgedScan scan = judgeScan(views, options, std::move(plan), progress);
-  scan.steps.insert(scan.steps.begin(), steps.begin(), steps.end());
-  return reconstruct(std::move(scan), options, progress);
+  return reconstruct(judgeScan(views, options, std::move(plan), progress), options, progress);
 }
 
 Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, const Progress& progress) {

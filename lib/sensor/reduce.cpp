@@ -2,7 +2,6 @@
 #include "vdbfuse/sensor/reduce.h"
 
 #include <algorithm>
-#include <optional>
 #include <vector>
 
 namespace vdbfuse {

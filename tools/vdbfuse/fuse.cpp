@@ -136,16 +136,11 @@ void writeOutputs(const Request& request, const Reconstruction& result, const Fu
 }
 
 JudgedScan judged(const DepthSet& set, Request& request, const Progress& progress) {
-  StepTimer timer;
-  timer.start("plan");
   ScanPlan plan = planReconstruction(set.views, request.reconstruct, progress);
-  std::vector<StepTime> steps = timer.finish();
   if (!request.quiet) printPlan(plan, request.reconstruct.method);
-  JudgedScan scan = request.judgement.empty()
-                        ? judgeScan(set.views, request.reconstruct, std::move(plan), progress)
-                        : readJudgement(request.judgement, set.views, std::move(plan), progress);
-  if (!request.judgement.empty()) request.reconstruct.noise_shape = scan.judgement.judged.sensor.shape;
-  scan.steps.insert(scan.steps.begin(), steps.begin(), steps.end());
+  if (request.judgement.empty()) return judgeScan(set.views, request.reconstruct, std::move(plan), progress);
+  JudgedScan scan = readJudgement(request.judgement, set.views, std::move(plan), progress);
+  request.reconstruct.noise_shape = scan.judgement.judged.sensor.shape;
   return scan;
 }
 

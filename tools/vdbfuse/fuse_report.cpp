@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "json_file.h"
-#include "memory_option.h"
 #include "vdbfuse/base/memory.h"
 
 namespace vdbfuse::tool {

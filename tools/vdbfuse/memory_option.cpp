@@ -38,11 +38,4 @@ CLI::Option* addMemoryOption(CLI::App& app, std::size_t& bytes) {
       ->type_name("SIZE");
 }
 
-std::string sizeText(std::size_t bytes) {
-  const double mib = static_cast<double>(bytes) / 0x1p20;
-  char text[32];
-  std::snprintf(text, sizeof text, mib < 1024 ? "%.0f MiB" : "%.1f GiB", mib < 1024 ? mib : mib / 1024);
-  return text;
-}
-
 }  // namespace vdbfuse::tool

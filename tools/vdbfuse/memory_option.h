@@ -10,7 +10,4 @@ namespace vdbfuse::tool {
 /// --memory SIZE: bytes, or a number with KiB, MiB, GiB, TiB (K, M, G, T mean the same) or kB, MB, GB, TB.
 CLI::Option* addMemoryOption(CLI::App& app, std::size_t& bytes);
 
-/// "512 MiB", "7.5 GiB".
-std::string sizeText(std::size_t bytes);
-
 }  // namespace vdbfuse::tool

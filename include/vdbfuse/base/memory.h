@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 namespace vdbfuse {
 
@@ -12,5 +13,8 @@ std::size_t availableMemoryBytes();
 
 /// Largest resident memory of this process so far, bytes; 0 where the system does not tell.
 std::size_t peakMemoryBytes();
+
+/// "512 MiB", "7.5 GiB".
+std::string sizeText(std::size_t bytes);
 
 }  // namespace vdbfuse

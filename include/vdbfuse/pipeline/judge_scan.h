@@ -22,7 +22,7 @@ struct JudgedScan {
 };
 
 /// Loads, calibrates and judges (section 2 of the algorithm). Of the options only the sensor's (noise_shape,
-/// noise_scale, outliers, judge) and `domain` count. Throws as reconstruct() does.
+/// noise_scale, outliers, judge), `domain` and `memory` count. Throws as reconstruct() does.
 JudgedScan judgeScan(const ViewSequence& views, const ReconstructOptions& options = {},
                      const Progress& progress = {});
 
@@ -30,7 +30,8 @@ JudgedScan judgeScan(const ViewSequence& views, const ReconstructOptions& option
 JudgedScan judgeScan(const ViewSequence& views, const ReconstructOptions& options, ScanPlan plan,
                      const Progress& progress = {});
 
-/// The rest: reconstruct(views, options) is reconstruct(judgeScan(views, options), options). The options'
+/// The rest: reconstruct(views, options) is reconstruct(judgeScan(views, options, planReconstruction(views,
+/// options)), options). The options'
 /// sensor does not count any more; their domain, where given, replaces the judgement's.
 Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options = {},
                            const Progress& progress = {});

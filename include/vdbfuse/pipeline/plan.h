@@ -34,6 +34,7 @@ struct ScanPlan {
   std::size_t estimated_memory = 0;  ///< bytes at the peak
   /// Views lie in a scratch file and this many bytes of them in memory; 0: all in memory.
   std::size_t window_bytes = 0;
+  std::vector<StepTime> steps;  ///< of making it; the first ones of what follows
 };
 
 /// Looks at up to 32 views spread over the sequence. `options`: those of reconstruct(). Throws what loading
