@@ -41,11 +41,10 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
       fillUnseenCavities(cells.octree, cells.tiles, sensorPositions(judged), cut_options.border, cut.labels);
 
   timer.start("surface");
-  const CellLabel beyond = cut_options.border == Border::Solid ? CellLabel::Inside : CellLabel::Outside;
-  const FieldOptions field_options{options.smoothing_voxels, kSupported, beyond};
-  ScalarGrid field =
-      signedField(judged, cells.octree, cells.tiles, cut.labels, support, field_options, progress);
-  result.mesh = extractSurface(field, progress);
+  SurfaceField surface = signedField(
+      judged, {cells.octree, cells.tiles, cut.labels, cells.support, cells.sigma, cut_options}, support,
+      {options.smoothing_voxels, kSupported, options.completion}, progress);
+  result.mesh = extractSurface(surface.distance, progress);
   describeVertices(support, result);
 
   result.grid = describeGrid(cells.octree, support, domain);
@@ -58,12 +57,13 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
                                 evidence_options.thickness,
                                 cut_options.border,
                                 cavities,
-                                specks};
+                                specks,
+                                surface.completion};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids = levelGrids(cells.octree, cells.sigma, "sigma", kUnknown);
   result.grids.push_back(discontinuityCost(support, options.mu));
   result.grids.push_back(std::move(support));
-  result.grids.push_back(std::move(field));
+  result.grids.push_back(std::move(surface.distance));
 }
 
 void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,

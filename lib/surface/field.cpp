@@ -5,272 +5,231 @@
 #include <array>
 #include <cmath>
 
+#include "surface/completion.h"
 #include "surface/label_blocks.h"
+#include "surface/measure.h"
+#include "surface/settle.h"
+#include "surface/smooth.h"
 #include "vdbfuse/base/parallel.h"
-#include "vdbfuse/geometry/projector.h"
-#include "vdbfuse/sensor/view_windows.h"
 #include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 namespace {
 
-constexpr int kReach = 4;             // voxels around the boundary that are looked at
-constexpr double kCutOff = 2.0;       // voxels: largest distance that is kept
-constexpr double kSameSide = 1.5;     // noise widths or voxels: beyond this a view sees another surface
-constexpr float kPutBack = 0.05f;     // voxels: what a voxel gets whose smoothed value has the wrong sign
-constexpr float kLeastCosine = 0.2f;  // incidence of pixels without a normal
-constexpr std::size_t kLeavesPerTask = 8;
-constexpr std::size_t kLeavesPerPass = 16384;  // at most 200 MB of sums
+constexpr std::size_t kSize = BlockSet::kBlockSize;
+constexpr int kReach = 4;           // voxels around the boundary that are looked at
+constexpr double kCutOff = 2.0;     // voxels: largest distance that is kept
+constexpr float kPutBack = 0.05f;   // voxels: what a voxel gets whose value has the wrong sign
+constexpr std::size_t kBlocksPerTask = 16;
 
-// A leaf with a margin of R voxels taken from its 26 neighbours.
-template <int R>
-struct Padded {
-  static constexpr int kSide = 8 + 2 * R;
-  std::array<float, static_cast<std::size_t>(kSide* kSide* kSide)> values;
-  float& at(int x, int y, int z) {
-    return values[static_cast<std::size_t>(((x + R) * kSide + y + R) * kSide + z + R)];
-  }
-  float at(int x, int y, int z) const {
-    return values[static_cast<std::size_t>(((x + R) * kSide + y + R) * kSide + z + R)];
-  }
-};
+double env(const char* n, double d) { return getenv(n) ? atof(getenv(n)) : d; }
 
-template <int R>
-Padded<R> loadPadded(const ScalarGrid& grid, const Index3& origin) {
-  Padded<R> result;
-  result.values.fill(kUnknown);
-  for (int n = 0; n < 27; ++n) {
-    const Index3 offset = 8 * (Index3(n % 3, n / 3 % 3, n / 9).array() - 1).matrix();
-    const std::optional<std::size_t> found = grid.findLeaf(origin + offset);
-    if (!found) continue;
-    const ScalarGrid::Leaf leaf = grid.leaf(*found);
-    const Index3 low = offset.cwiseMax(-R), high = (offset.array() + 8).min(8 + R);
-    for (int x = low.x(); x < high.x(); ++x) {
-      for (int y = low.y(); y < high.y(); ++y) {
-        for (int z = low.z(); z < high.z(); ++z) {
-          result.at(x, y, z) = leaf.at(x - offset.x(), y - offset.y(), z - offset.z());
-        }
+template <class Visit>
+void forEachBlock(const BlockSet& blocks, const Visit& visit) {
+  parallelFor(blocks.count(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) visit(b);
+  });
+}
+
+// +1 (outside) and −1 (inside) on all blocks around the boundary.
+BlockField labelSides(const LabelledCells& cells, CellLabel beyond) {
+  BlockField sides{cells.octree.frame,
+                   BlockSet(boundaryBlocks(cells.octree, cells.tiles, cells.labels, beyond, kReach)),
+                   {}};
+  sides.values.resize(sides.blocks.count() * kSize);
+  const LabelReader reader(cells.octree, cells.labels, beyond);
+  forEachBlock(sides.blocks, [&](std::size_t b) {
+    std::array<CellLabel, kSize> labels;
+    reader.readBlock(sides.blocks.origin(b), labels.data());
+    std::transform(labels.begin(), labels.end(), sides.block(b),
+                   [](CellLabel l) { return l == CellLabel::Outside ? 1.0f : -1.0f; });
+  });
+  return sides;
+}
+
+// Voxels with another side within two voxels along every axis.
+std::vector<float> nearBoundary(const BlockField& sides) {
+  std::vector<float> near(sides.values.size());
+  // Both sides are among a voxel's neighbours when their mean is neither +1 nor −1.
+  const std::vector<float> ones(sides.values.size(), 1.0f);
+  const std::vector<float> mean = smoothed(sides.blocks, sides.values, ones, 2.0);
+  for (std::size_t i = 0; i < near.size(); ++i) near[i] = std::abs(mean[i]) < 0.9999f ? 1.0f : 0.0f;
+  return near;
+}
+
+// Clears `marks` where neither the voxel nor one of its six neighbours is supported.
+void keepSupported(const BlockSet& blocks, const ScalarGrid& support, float supported,
+                   std::vector<float>& marks) {
+  std::vector<float> agreement(marks.size(), support.background());
+  forEachBlock(blocks, [&](std::size_t b) {
+    if (const std::optional<std::size_t> leaf = support.findLeaf(blocks.origin(b))) {
+      const ScalarGrid::Leaf values = support.leaf(*leaf);
+      std::copy(values.values.begin(), values.values.end(), &agreement[b * kSize]);
+    }
+  });
+  forEachBlock(blocks, [&](std::size_t b) {
+    PaddedBlock<1, 1> c;
+    loadPadded(blocks, agreement.data(), b, support.background(), c);
+    for (int i = 0; i < static_cast<int>(kSize); ++i) {
+      const Index3 v = leafOffset(i);
+      float largest = c.at(v.x(), v.y(), v.z());
+      for (int n = 0; n < 6; ++n) {
+        const Index3 o = v + (n % 2 * 2 - 1) * Index3(Index3::Unit(n / 2));
+        largest = std::max(largest, c.at(o.x(), o.y(), o.z()));
       }
+      if (!(largest >= supported)) marks[b * kSize + static_cast<std::size_t>(i)] = 0;
+    }
+  });
+}
+
+// Blocks around the boundary seen in a block that are not there.
+void appendMissing(const BlockField& sides, std::size_t b, std::vector<Index3>& out) {
+  constexpr int kMargin = 3;  // smoothing looks that far
+  PaddedBlock<1, 1> near;
+  loadPadded(sides.blocks, sides.values.data(), b, 0.0f, near);
+  Index3 low = Index3::Constant(8), high = Index3::Constant(-1);
+  for (int i = 0; i < static_cast<int>(kSize); ++i) {
+    const Index3 v = leafOffset(i);
+    const float side = near.at(v.x(), v.y(), v.z());
+    for (int n = 0; n < 6; ++n) {
+      const Index3 o = v + (n % 2 * 2 - 1) * Index3(Index3::Unit(n / 2));
+      if (near.at(o.x(), o.y(), o.z()) == -side) low = low.cwiseMin(v), high = high.cwiseMax(v);
     }
   }
+  if (high.x() < 0) return;
+  const auto reached = [&](const Index3& step) {
+    bool all = true;
+    for (int a = 0; a < 3; ++a)
+      all &= step[a] == 0 || (step[a] < 0 ? low[a] < kMargin : high[a] >= 8 - kMargin);
+    return all;
+  };
+  for (int n = 0; n < 27; ++n) {
+    const Index3 step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
+    if (sides.blocks.neighbour(b, step.x(), step.y(), step.z()) == kNoBlock && reached(step))
+      out.push_back(sides.blocks.origin(b) + 8 * step);
+  }
+}
+
+// The blocks of a boundary and all that it reaches from them. `read` gives the sides of a block.
+template <class Read>
+BlockField grownSides(const GridFrame& frame, std::vector<Index3> origins, const Read& read) {
+  while (true) {
+    BlockField sides{frame, BlockSet(origins), {}};
+    sides.values.resize(sides.blocks.count() * kSize);
+    forEachBlock(sides.blocks, [&](std::size_t b) { read(sides.blocks.origin(b), sides.block(b)); });
+    std::vector<std::vector<Index3>> parts(sides.blocks.count());
+    forEachBlock(sides.blocks, [&](std::size_t b) { appendMissing(sides, b, parts[b]); });
+    const std::size_t before = origins.size();
+    for (const auto& part : parts) origins.insert(origins.end(), part.begin(), part.end());
+    if (origins.size() == before) return sides;
+  }
+}
+
+std::vector<float> moved(const std::vector<float>& values, const BlockSet& from, const BlockSet& to,
+                         float missing) {
+  std::vector<float> result(to.count() * kSize, missing);
+  forEachBlock(to, [&](std::size_t b) {
+    const std::uint32_t old = from.find(to.origin(b));
+    if (old != kNoBlock) std::copy_n(&values[old * kSize], kSize, &result[b * kSize]);
+  });
   return result;
 }
 
-// Sums for the mean signed distance that the depth maps give a voxel.
-struct DistanceSum {
-  double distance = 0, weight = 0;
+// The signed field while it is made. All arrays hold 512 values a block.
+struct FieldParts {
+  BlockField sides;
+  MeasuredField measured;
+  std::vector<float> completed;  ///< signed distance, kUnknown where nothing was completed
 };
 
-// What the views that see this side of the surface measured.
-class DistanceMeter {
- public:
-  DistanceMeter(const SensorModel& sensor, double voxel) : sensor_(sensor), voxel_(voxel) {}
-
-  void add(const JudgedView& view, const Sighting& seen, CellLabel label, DistanceSum& sum) const {
-    const float measured = view.depth(seen.x, seen.y);
-    if (measured == kInvalidDepth) return;
-    const double distance = measured - seen.depth;
-    if (std::abs(distance) > 3 * voxel_ + 3 * sensor_.noise.at(measured)) return;
-    const double noise = lookupNoise(sensor_, view.projection, measured);
-    const double contradiction = label == CellLabel::Outside ? -distance : distance;
-    if (contradiction > kSameSide * std::max(voxel_, noise)) return;
-    const double cosine = std::max(view.incidence(seen.x, seen.y), kLeastCosine);
-    const double weight =
-        view.weight * (1 - view.outlier(seen.x, seen.y)) * cosine * cosine / (noise * noise);
-    sum.distance += weight * distance * cosine;
-    sum.weight += weight;
+// Distances before smoothing: measured, completed, or half a voxel from the boundary.
+std::vector<float> compose(const FieldParts& parts) {
+  const std::vector<float> near = nearBoundary(parts.sides);
+  const auto voxel = static_cast<float>(parts.sides.frame.voxel);
+  const float limit = static_cast<float>(kCutOff) * voxel;
+  std::vector<float> field(near.size());
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    float value = parts.measured.distance[i];
+    if (std::isnan(value)) value = parts.completed[i];
+    if (std::isnan(value)) value = parts.sides.values[i] * (near[i] > 0 ? 0.5f * voxel : limit);
+    field[i] = std::clamp(value, -limit, limit);
   }
-
- private:
-  const SensorModel& sensor_;
-  double voxel_;
-};
-
-float towards(CellLabel label, float magnitude) {
-  return label == CellLabel::Outside ? magnitude : -magnitude;
-}
-CellLabel labelOf(float sign) { return sign > 0 ? CellLabel::Outside : CellLabel::Inside; }
-// Zero would count as outside when triangles are made, whatever the label says.
-bool agrees(float value, CellLabel label) { return label == CellLabel::Outside ? value > 0 : value < 0; }
-
-// Grid of +1 (outside) and −1 (inside) on all blocks around the boundary.
-ScalarGrid labelGrid(const Octree& octree, const std::vector<CellLabel>& labels, CellLabel beyond,
-                     std::vector<Index3> blocks) {
-  ScalarGrid grid("labels", octree.frame, kUnknown, std::move(blocks));
-  const LabelReader reader(octree, labels, beyond);
-  grid.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
-    std::array<CellLabel, ScalarGrid::kLeafSize> block;
-    reader.readBlock(leaf.origin, block.data());
-    std::transform(block.begin(), block.end(), leaf.values.begin(),
-                   [](CellLabel l) { return towards(l, 1.0f); });
-  });
-  return grid;
+  return field;
 }
 
-// Whether a voxel has another label within two voxels along some axis or diagonal neighbour.
-bool isNearBoundary(const Padded<2>& labels, const Index3& v) {
-  const float own = labels.at(v.x(), v.y(), v.z());
-  for (int x = -2; x <= 2; ++x) {
-    for (int y = -2; y <= 2; ++y) {
-      for (int z = -2; z <= 2; ++z) {
-        if (labels.at(v.x() + x, v.y() + y, v.z() + z) == -own) return true;
-      }
-    }
-  }
-  return false;
-}
-
-// A voxel of a leaf that is measured.
-struct MeasuredVoxel {
-  int place = 0;
-  CellLabel label = CellLabel::Outside;
-  DistanceSum sum;
-};
-
-// First values: half a voxel near the boundary, the cut-off far from it. Returns the voxels near it that are
-// supported: those have a measured distance.
-std::vector<MeasuredVoxel> startLeaf(const ScalarGrid& labels, const ScalarGrid& support,
-                                     const FieldOptions& options, const ScalarGrid::Leaf& out) {
-  const Padded<2> near = loadPadded<2>(labels, out.origin);
-  const float voxel = static_cast<float>(labels.frame().voxel);
-  const std::optional<std::size_t> found = support.findLeaf(out.origin);
-  std::vector<MeasuredVoxel> measured;
-  for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
-    const Index3 v = leafOffset(i);
-    const CellLabel label = labelOf(near.at(v.x(), v.y(), v.z()));
-    const bool is_near = isNearBoundary(near, v);
-    out.values[static_cast<std::size_t>(i)] =
-        towards(label, (is_near ? 0.5f : static_cast<float>(kCutOff)) * voxel);
-    const float agreement =
-        found ? support.leaf(*found).values[static_cast<std::size_t>(i)] : support.background();
-    if (is_near && agreement >= options.supported) measured.push_back({i, label, {}});
-  }
-  return measured;
-}
-
-void addViews(const std::vector<const JudgedView*>& views, const std::vector<Projector>& projectors,
-              const DistanceMeter& meter, const GridFrame& frame, const Index3& origin,
-              std::vector<MeasuredVoxel>& voxels) {
-  if (voxels.empty()) return;
-  constexpr double kLeafRadius = 0.5 * ScalarGrid::kLeafSide * 1.7320508;
-  const Eigen::Vector3d centre =
-      frame.toWorld(Eigen::Vector3d(origin.cast<double>().array() + 0.5 * (ScalarGrid::kLeafSide - 1)));
-  for (std::size_t k = 0; k < views.size(); ++k) {
-    if (!projectors[k].mightSee(centre, kLeafRadius * frame.voxel)) continue;
-    for (MeasuredVoxel& voxel : voxels) {
-      const auto seen = projectors[k](frame.toWorld(Index3(origin + leafOffset(voxel.place))));
-      if (seen) meter.add(*views[k], *seen, voxel.label, voxel.sum);
-    }
-  }
-}
-
-void setMeasured(const std::vector<MeasuredVoxel>& voxels, float voxel_size, const ScalarGrid::Leaf& out) {
-  const float limit = static_cast<float>(kCutOff) * voxel_size;
-  for (const MeasuredVoxel& voxel : voxels) {
-    if (!(voxel.sum.weight > 0)) continue;
-    float& value = out.values[static_cast<std::size_t>(voxel.place)];
-    value = std::clamp(static_cast<float>(voxel.sum.distance / voxel.sum.weight), -limit, limit);
-    if (!agrees(value, voxel.label)) value = towards(voxel.label, kPutBack * voxel_size);
-  }
-}
-
-// First values of leaves [begin, end). Windows of views pass by on the outside.
-void measureLeaves(const JudgedViews& judged, const ScalarGrid& labels, const ScalarGrid& support,
-                   const FieldOptions& options, std::size_t begin, std::size_t end, ScalarGrid& out) {
-  const GridFrame& frame = labels.frame();
-  const DistanceMeter meter(judged.sensor, frame.voxel);
-  std::vector<std::vector<MeasuredVoxel>> voxels(end - begin);
-  const auto for_each_leaf = [&](const auto& visit) {
-    parallelFor(end - begin, kLeavesPerTask, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) visit(out.leaf(begin + i), voxels[i]);
-    });
-  };
-  for_each_leaf([&](const ScalarGrid::Leaf& leaf, std::vector<MeasuredVoxel>& measured) {
-    measured = startLeaf(labels, support, options, leaf);
-  });
-  forEachWindow(judged.views, [&](std::size_t first, std::size_t last) {
-    std::vector<const JudgedView*> views;
-    std::vector<Projector> projectors;
-    for (std::size_t i = first; i < last; ++i) {
-      views.push_back(&judged.views[i]);
-      projectors.emplace_back(judged.views[i].projection, judged.views[i].world_from_camera);
-    }
-    for_each_leaf([&](const ScalarGrid::Leaf& leaf, std::vector<MeasuredVoxel>& measured) {
-      addViews(views, projectors, meter, frame, leaf.origin, measured);
-    });
-  });
-  for_each_leaf([&](const ScalarGrid::Leaf& leaf, const std::vector<MeasuredVoxel>& measured) {
-    setMeasured(measured, static_cast<float>(frame.voxel), leaf);
-  });
-}
-
-std::array<float, 5> gaussianWeights(double sigma) {
-  std::array<float, 5> weights;
-  for (int k = -2; k <= 2; ++k)
-    weights[static_cast<std::size_t>(k + 2)] = static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma)));
-  return weights;
-}
-
-// Gaussian along one axis over the known values of a padded leaf; the margin along the other axes shrinks
-// later.
-void smoothAxis(Padded<2>& patch, int axis, const std::array<float, 5>& weights) {
-  const Padded<2> in = patch;
-  const Index3 step = Index3::Unit(axis);
-  Index3 low(-2, -2, -2), high(10, 10, 10);
-  low[axis] = 0, high[axis] = 8;
-  for (int x = low.x(); x < high.x(); ++x) {
-    for (int y = low.y(); y < high.y(); ++y) {
-      for (int z = low.z(); z < high.z(); ++z) {
-        float sum = 0, total = 0;
-        for (int k = -2; k <= 2; ++k) {
-          const float value = in.at(x + k * step.x(), y + k * step.y(), z + k * step.z());
-          if (std::isnan(value)) continue;
-          sum += weights[static_cast<std::size_t>(k + 2)] * value;
-          total += weights[static_cast<std::size_t>(k + 2)];
-        }
-        patch.at(x, y, z) = total > 0 ? sum / total : kUnknown;
-      }
-    }
-  }
-}
-
-void smoothLeaf(const ScalarGrid& field, const ScalarGrid& labels, const std::array<float, 5>& weights,
-                const ScalarGrid::Leaf& out) {
-  Padded<2> patch = loadPadded<2>(field, out.origin);
-  for (int axis = 0; axis < 3; ++axis) smoothAxis(patch, axis, weights);
-  const ScalarGrid::Leaf sides = labels.leaf(*labels.findLeaf(out.origin));
-  const float least = kPutBack * static_cast<float>(field.frame().voxel);
-  for (int i = 0; i < ScalarGrid::kLeafSize; ++i) {
-    const Index3 v = leafOffset(i);
-    const CellLabel label = labelOf(sides.values[static_cast<std::size_t>(i)]);
-    const float value = patch.at(v.x(), v.y(), v.z());
-    out.values[static_cast<std::size_t>(i)] = agrees(value, label) ? value : towards(label, least);
+// Gives the side of its voxel to every value. Zero would count as outside, whatever the side.
+void putBack(const BlockField& sides, std::vector<float>& field) {
+  const float least = kPutBack * static_cast<float>(sides.frame.voxel);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!(field[i] * sides.values[i] > 0)) field[i] = sides.values[i] * least;
   }
 }
 
 }  // namespace
 
-ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const CellTiles& tiles,
-                       const std::vector<CellLabel>& labels, const ScalarGrid& support,
-                       const FieldOptions& options, const Progress& progress) {
-  const std::vector<Index3> blocks = boundaryBlocks(octree, tiles, labels, options.beyond, kReach);
-  const ScalarGrid sides = labelGrid(octree, labels, options.beyond, blocks);
-  ScalarGrid measured("surface", octree.frame, kUnknown, blocks);
-  ProgressStep step(progress, "place surface", measured.leafCount());
-  for (std::size_t begin = 0; begin < measured.leafCount(); begin += kLeavesPerPass) {
-    const std::size_t end = std::min(begin + kLeavesPerPass, measured.leafCount());
-    measureLeaves(judged, sides, support, options, begin, end, measured);
-    step.advance(end - begin);
+SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, const ScalarGrid& support,
+                         const FieldOptions& options, const Progress& progress) {
+  const CellLabel beyond = cells.energy.border == Border::Solid ? CellLabel::Inside : CellLabel::Outside;
+  const GridFrame& frame = cells.octree.frame;
+  FieldParts parts;
+  parts.sides = labelSides(cells, beyond);
+  std::vector<float> wanted = nearBoundary(parts.sides);
+  keepSupported(parts.sides.blocks, support, options.supported, wanted);
+  parts.measured = measureDistances(judged, parts.sides, wanted, progress);
+  parts.completed.assign(parts.sides.values.size(), kUnknown);
+  SurfaceField result{ScalarGrid("surface", frame, kUnknown), {}};
+  if (options.completion.kind == CompletionOptions::Kind::Isotropic) {
+    const CellPyramid pyramid(cells.octree, cells.labels, cells.support, cells.sigma, cells.energy);
+    const Completion completion =
+        completeSurface(pyramid, cells.tiles, support, parts.sides.blocks, parts.measured.distance,
+                        options.supported, options.completion, progress);
+    result.completion = completion.report();
+    std::vector<Index3> blocks = parts.sides.blocks.origins();
+    completion.appendBlocks(blocks);
+    BlockField sides = grownSides(frame, std::move(blocks), [&](const Index3& origin, float* values) {
+      completion.readSides(origin, values);
+    });
+    parts.measured.distance =
+        moved(parts.measured.distance, parts.sides.blocks, sides.blocks, kUnknown);
+    parts.measured.weight = moved(parts.measured.weight, parts.sides.blocks, sides.blocks, 0.0f);
+    wanted = moved(wanted, parts.sides.blocks, sides.blocks, 0.0f);
+    parts.sides = std::move(sides);
+    parts.completed.assign(parts.sides.values.size(), kUnknown);
+    forEachBlock(parts.sides.blocks, [&](std::size_t b) {
+      completion.readDistances(parts.sides.blocks.origin(b), &parts.completed[b * kSize]);
+    });
   }
-  measured.setKind(GridKind::LevelSet);
-  measured.metadata()["about"] = "signed distance to the surface, > 0 outside";
-  if (!(options.smoothing_voxels > 0)) return measured;
-  ScalarGrid smooth("surface", octree.frame, kUnknown, blocks);
-  const std::array<float, 5> weights = gaussianWeights(options.smoothing_voxels);
-  smooth.forEachLeaf([&](const ScalarGrid::Leaf& leaf) { smoothLeaf(measured, sides, weights, leaf); });
-  smooth.setKind(GridKind::LevelSet);
-  smooth.metadata() = measured.metadata();
-  return smooth;
+  std::vector<float> field = compose(parts);
+  const double s0 = env("S0", 1.0), s1 = env("S1", 1.0);
+  const int passes = static_cast<int>(env("NR", 1));
+  const std::vector<float> ones(field.size(), 1.0f);
+  const auto voxel = static_cast<float>(frame.voxel);
+  if (s0 > 0) field = smoothed(parts.sides.blocks, field, ones, s0);
+  for (int pass = 0; pass < passes; ++pass) {
+    BlockField current{frame, parts.sides.blocks, field};
+    std::vector<float> close(field.size());
+    for (std::size_t i = 0; i < field.size(); ++i)
+      close[i] = wanted[i] > 0 && std::abs(field[i]) < 1.5f * voxel ? 1.0f : 0.0f;
+    MeasuredField residual = measureResiduals(judged, current, close, progress);
+    std::vector<float> change = s1 > 0 ? smoothed(parts.sides.blocks, residual.distance, residual.weight, s1)
+                                       : residual.distance;
+    for (std::size_t i = 0; i < field.size(); ++i)
+      if (close[i] > 0 && !std::isnan(change[i])) field[i] += change[i];
+  }
+  if (env("SETTLE", 1) > 0) {
+    const std::size_t n = settleSides(field, wanted, parts.sides);
+    if (getenv("TVLOG")) fprintf(stderr, "settled %zu\n", n);
+  }
+  putBack(parts.sides, field);
+  ScalarGrid grid("surface", frame, kUnknown, parts.sides.blocks.origins());
+  grid.forEachLeaf([&](const ScalarGrid::Leaf& leaf) {
+    const std::size_t b = parts.sides.blocks.find(leaf.origin);
+    std::copy_n(&field[b * kSize], kSize, leaf.values.begin());
+  });
+  grid.setKind(GridKind::LevelSet);
+  grid.metadata()["about"] = "signed distance to the surface, > 0 outside";
+  result.distance = std::move(grid);
+  return result;
 }
 
 }  // namespace vdbfuse

@@ -30,6 +30,9 @@ const std::map<std::string, EvidenceRule> kRules = {{"outside", EvidenceRule::Ou
                                                     {"no-self-occlusion", EvidenceRule::NoSelfOcclusion},
                                                     {"constant", EvidenceRule::Constant}};
 
+const std::map<std::string, CompletionOptions::Kind> kCompletions = {
+    {"isotropic", CompletionOptions::Kind::Isotropic}, {"none", CompletionOptions::Kind::None}};
+
 struct Request {
   fs::path input, output, judgement, grids, json;
   SensorArguments sensor;
@@ -76,6 +79,8 @@ void addEnergyOptions(CLI::App& app, Request& r) {
       ->check(CLI::Range(1e-6, 0.499))
       ->capture_default_str();
   app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap")->capture_default_str();
+  choice(app, "--completion", o.completion.kind, kCompletions,
+         "Where nothing was measured: a minimal surface, or the faces of the cut");
   app.add_option("--truncation", o.truncation, "Of --method tsdf; default 4 voxels")
       ->check(CLI::PositiveNumber);
 }

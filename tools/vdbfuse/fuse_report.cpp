@@ -51,7 +51,8 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"depth_prior", o.prior_decay},
             {"mu", o.mu}};
   if (result.cut)
-    j.update({{"lambda", result.cut->lambda},
+    j.update({{"completion", result.cut->completion ? "isotropic" : "none"},
+              {"lambda", result.cut->lambda},
               {"thickness", result.cut->thickness},
               {"border", nameOf(result.cut->border)}});
   return j;
@@ -126,6 +127,11 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
                 {"cavities_volume", result.cut->cavities.volume},
                 {"specks_removed", result.cut->specks.removed},
                 {"specks_volume", result.cut->specks.volume}};
+  }
+  if (result.cut && result.cut->completion) {
+    const CompletionReport& c = *result.cut->completion;
+    j["completion"] = {
+        {"primal", c.primal}, {"dual", c.dual}, {"area", c.area}, {"iterations", c.iterations}};
   }
   j["mesh"] = meshJson(result, context.topology);
   j["steps"] = stepsJson(result.steps);

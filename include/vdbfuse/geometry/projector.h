@@ -65,6 +65,20 @@ class Projector {
                   pinhole_->fy * p.y() * inverse + pinhole_->cy, p.z());
   }
 
+  /// Where between the pixels, inside the image.
+  std::optional<PixelDepth> place(const Eigen::Vector3d& world) const {
+    const Eigen::Vector3d p = rotation_ * world + translation_;
+    std::optional<PixelDepth> seen;
+    if (!pinhole_) {
+      seen = project(projection_, p);
+    } else if (p.z() > 0) {
+      seen = PixelDepth{pinhole_->fx * p.x() / p.z() + pinhole_->cx,
+                        pinhole_->fy * p.y() / p.z() + pinhole_->cy, p.z()};
+    }
+    if (!seen || !inside(seen->x, seen->y, seen->depth)) return std::nullopt;
+    return seen;
+  }
+
   /// For loops over many points near `origin`; nothing for other projections.
   std::optional<PinholeRows> rowsFrom(const Eigen::Vector3d& origin) const {
     if (!pinhole_) return std::nullopt;

@@ -52,6 +52,7 @@ struct ReconstructOptions {
 
   // The surface.
   double smoothing_voxels = 1.0;
+  CompletionOptions completion;  ///< of what nobody measured
   double truncation = 0.0;  ///< of the TSDF, length; default max(4 voxels, 3 × noise)
 
   /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
@@ -101,6 +102,8 @@ struct CutReportSummary {
   Border border = Border::Outside;
   CavityReport cavities;
   SpeckReport specks;  ///< smaller than a cube of the noise
+  /// Energy and gap of the completed parts; nothing when they were left as the cut made them.
+  std::optional<CompletionReport> completion;
 };
 
 struct MemoryReport {

@@ -3,6 +3,8 @@
 // the depth maps.
 #pragma once
 
+#include <optional>
+
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/octree/graph.h"
 #include "vdbfuse/octree/octree.h"
@@ -11,21 +13,52 @@
 
 namespace vdbfuse {
 
+/// The cells of the cut and what it found. References: arrays of octree.cellCount() values.
+struct LabelledCells {
+  const Octree& octree;
+  const CellTiles& tiles;
+  const std::vector<CellLabel>& labels;
+  const std::vector<float>& support;  ///< C
+  const std::vector<float>& sigma;
+  CutOptions energy;
+};
+
+struct CompletionOptions {
+  /// Isotropic: unsupported parts minimise (1) with Euclidean area. None: they stay as the cut left them, on
+  /// the faces of cells.
+  enum class Kind { Isotropic, None };
+  Kind kind = Kind::Isotropic;
+  /// The search ends when primal − dual falls below this share of the area, and the surface rests.
+  double tolerance = 0.003;
+  /// 40 iterations each, on each level.
+  int max_rounds = 25;
+};
+
+/// The finest level of the completion. The minimum of the energy lies between dual and primal.
+struct CompletionReport {
+  double primal = 0, dual = 0;  ///< in faces of finest cells
+  double area = 0;              ///< faces
+  int iterations = 0;
+};
+
 struct FieldOptions {
   /// Standard deviation of the Gaussian that smooths the field, voxels. More rounds edges.
   double smoothing_voxels = 1.0;
   /// Fewer agreeing views than this do not support a surface.
   float supported = 0.3f;
-  /// What lies beyond the domain.
-  CellLabel beyond = CellLabel::Outside;
+  CompletionOptions completion;
+};
+
+struct SurfaceField {
+  ScalarGrid distance;
+  std::optional<CompletionReport> completion;
 };
 
 /// Grid "surface" on the finest voxels around the boundary between the labels; kUnknown further away. Signed
-/// distance, > 0 outside, cut off at two voxels. Its sign equals the label of every voxel. Where `support`
-/// (C) holds, the distance is the mean of (D − d)·cos over the views that see this side of the surface,
-/// weighted by reliability, incidence and precision; elsewhere half a voxel to the label's side.
-ScalarGrid signedField(const JudgedViews& judged, const Octree& octree, const CellTiles& tiles,
-                       const std::vector<CellLabel>& labels, const ScalarGrid& support,
-                       const FieldOptions& options = {}, const Progress& progress = {});
+/// distance, > 0 outside, cut off at two voxels. Where `support` (C of the finest voxels) holds, its sign is
+/// the label of the voxel, and the distance is the mean of (D − d)·cos over the views that see this side of
+/// the surface, weighted by reliability, incidence and precision; elsewhere that of the completed surface.
+SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, const ScalarGrid& support,
+                         const FieldOptions& options = {}, const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface/measure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/geometry/projector.h"
+#include "vdbfuse/sensor/view_windows.h"
+
+namespace vdbfuse {
+namespace {
+
+constexpr std::size_t kSize = BlockSet::kBlockSize;
+constexpr std::size_t kBlocksPerTask = 8;
+constexpr std::size_t kBlocksPerPass = 16384;
+constexpr double kSameSide = 1.5;     // noise widths or voxels: beyond this a view sees another surface
+constexpr double kNear = 3.0;         // the same for residuals, noise widths; at least 1.5 voxels
+constexpr double kLeastCosine = 0.2;  // incidence of pixels without a normal, and the least that is looked at
+
+// A place where the depth maps are asked.
+struct Probe {
+  std::uint32_t voxel = 0;  // of the block
+  float side = 0;           // +1 outside, −1 inside
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // outwards
+  double distance = 0, weight = 0;                   // weighted sums
+};
+
+struct PreparedView {
+  const JudgedView* view;
+  Projector projector;
+  Eigen::Matrix3d camera_from_world;
+};
+
+// The mean signed distance of a voxel.
+class DistanceMeter {
+ public:
+  DistanceMeter(const SensorModel& sensor, double voxel) : sensor_(sensor), voxel_(voxel) {}
+
+  void add(const PreparedView& prepared, Probe& probe) const {
+    const JudgedView& view = *prepared.view;
+    const std::optional<Sighting> seen = prepared.projector(probe.point);
+    if (!seen) return;
+    const float measured = view.depth(seen->x, seen->y);
+    if (measured == kInvalidDepth) return;
+    const double distance = measured - seen->depth;
+    if (std::abs(distance) > 3 * voxel_ + 3 * sensor_.noise.at(measured)) return;
+    const double noise = lookupNoise(sensor_, view.projection, measured);
+    if (-probe.side * distance > kSameSide * std::max(voxel_, noise)) return;
+    const double cosine = std::max<double>(view.incidence(seen->x, seen->y), kLeastCosine);
+    const double weight =
+        view.weight * (1 - view.outlier(seen->x, seen->y)) * cosine * cosine / (noise * noise);
+    probe.distance += weight * distance * cosine;
+    probe.weight += weight;
+  }
+
+ private:
+  const SensorModel& sensor_;
+  double voxel_;
+};
+
+// The mean distance of the measurements from a point of the surface, along its normal.
+class ResidualMeter {
+ public:
+  ResidualMeter(const SensorModel& sensor, double voxel) : sensor_(sensor), voxel_(voxel) {}
+
+  void add(const PreparedView& prepared, Probe& probe) const {
+    const JudgedView& view = *prepared.view;
+    const std::optional<PixelDepth> seen = prepared.projector.place(probe.point);
+    if (!seen) return;
+    const int x = static_cast<int>(seen->x + 0.5), y = static_cast<int>(seen->y + 0.5);
+    const float nearest = view.depth(x, y);
+    if (nearest == kInvalidDepth) return;
+    const double noise = sensor_.noise.at(nearest);
+    const double reach = std::max(1.5 * voxel_, kNear * noise);
+    if (std::abs(nearest - seen->depth) > reach / kLeastCosine) return;
+    // Points at the same pixel move along this direction when their depth grows by 1.
+    const Eigen::Vector3d along = unproject(view.projection, seen->x, seen->y, seen->depth + 1) -
+                                  unproject(view.projection, seen->x, seen->y, seen->depth);
+    const double slope = -(prepared.camera_from_world * probe.normal).dot(along);
+    const double cosine = slope / along.norm();
+    if (cosine < kLeastCosine) return;  // seen from behind, or hardly
+    const double residual = (interpolated(view, *seen, nearest, noise) - seen->depth) * slope;
+    if (std::abs(residual) > reach) return;
+    const double slack = lookupNoise(sensor_, view.projection, nearest);
+    const double weight = view.weight * (1 - view.outlier(x, y)) * cosine * cosine / (slack * slack);
+    probe.distance += weight * residual;
+    probe.weight += weight;
+  }
+
+ private:
+  // Bilinear between four pixels of one surface, else that of the nearest pixel.
+  double interpolated(const JudgedView& view, const PixelDepth& seen, float nearest, double noise) const {
+    const int x = static_cast<int>(std::floor(seen.x)), y = static_cast<int>(std::floor(seen.y));
+    if (x < 0 || y < 0 || x + 1 >= view.depth.width() || y + 1 >= view.depth.height()) return nearest;
+    const double limit = 4 * noise + 5 * footprint(view.projection, nearest);
+    double depths[4];
+    for (int k = 0; k < 4; ++k) {
+      depths[k] = view.depth(x + (k & 1), y + (k >> 1));
+      if (depths[k] == kInvalidDepth || std::abs(depths[k] - nearest) > limit) return nearest;
+      if (view.outlier(x + (k & 1), y + (k >> 1)) > 0.5f) return nearest;
+    }
+    const double u = seen.x - x, v = seen.y - y;
+    return (1 - v) * ((1 - u) * depths[0] + u * depths[1]) + v * ((1 - u) * depths[2] + u * depths[3]);
+  }
+
+  const SensorModel& sensor_;
+  double voxel_;
+};
+
+// Asks all views about the probes of blocks [begin, end). Windows of views pass by on the outside.
+template <class Meter>
+void askViews(const JudgedViews& judged, const BlockField& field, const Meter& meter, std::size_t begin,
+              std::vector<std::vector<Probe>>& probes) {
+  constexpr double kBlockRadius = 0.5 * 8 * 1.7320508 + 2;  // points may lie beside their voxels
+  forEachWindow(judged.views, [&](std::size_t first, std::size_t last) {
+    std::vector<PreparedView> views;
+    for (std::size_t i = first; i < last; ++i) {
+      const JudgedView& view = judged.views[i];
+      views.push_back({&view, Projector(view.projection, view.world_from_camera),
+                       view.world_from_camera.linear().transpose()});
+    }
+    parallelFor(probes.size(), kBlocksPerTask, [&](std::size_t low, std::size_t high) {
+      for (std::size_t b = low; b < high; ++b) {
+        if (probes[b].empty()) continue;
+        const Eigen::Vector3d centre = field.frame.toWorld(
+            Eigen::Vector3d(field.blocks.origin(begin + b).template cast<double>().array() + 3.5));
+        for (const PreparedView& view : views) {
+          if (!view.projector.mightSee(centre, kBlockRadius * field.frame.voxel)) continue;
+          for (Probe& probe : probes[b]) meter.add(view, probe);
+        }
+      }
+    });
+  });
+}
+
+// `make(block)` gives the probes of a block.
+template <class Meter, class Make>
+MeasuredField measure(const JudgedViews& judged, const BlockField& field, const Meter& meter,
+                      const Make& make, const char* name, const Progress& progress) {
+  MeasuredField result{std::vector<float>(field.values.size(), kUnknown),
+                       std::vector<float>(field.values.size(), 0.0f)};
+  ProgressStep step(progress, name, field.blocks.count());
+  for (std::size_t begin = 0; begin < field.blocks.count(); begin += kBlocksPerPass) {
+    const std::size_t end = std::min(begin + kBlocksPerPass, field.blocks.count());
+    std::vector<std::vector<Probe>> probes(end - begin);
+    parallelFor(probes.size(), kBlocksPerTask, [&](std::size_t first, std::size_t last) {
+      for (std::size_t b = first; b < last; ++b) probes[b] = make(begin + b);
+    });
+    askViews(judged, field, meter, begin, probes);
+    for (std::size_t b = 0; b < probes.size(); ++b) {
+      for (const Probe& probe : probes[b]) {
+        if (!(probe.weight > 0)) continue;
+        const std::size_t voxel = (begin + b) * kSize + probe.voxel;
+        result.distance[voxel] = static_cast<float>(probe.distance / probe.weight);
+        result.weight[voxel] = static_cast<float>(probe.weight);
+      }
+    }
+    step.advance(end - begin);
+  }
+  return result;
+}
+
+}  // namespace
+
+MeasuredField measureDistances(const JudgedViews& judged, const BlockField& sides,
+                               const std::vector<float>& wanted, const Progress& progress) {
+  const auto make = [&](std::size_t b) {
+    std::vector<Probe> probes;
+    for (std::uint32_t i = 0; i < kSize; ++i) {
+      if (!(wanted[b * kSize + i] > 0)) continue;
+      const Index3 voxel = sides.blocks.origin(b) + leafOffset(static_cast<int>(i));
+      probes.push_back({i, sides.block(b)[i], sides.frame.toWorld(voxel)});
+    }
+    return probes;
+  };
+  return measure(judged, sides, DistanceMeter(judged.sensor, sides.frame.voxel), make, "place surface",
+                 progress);
+}
+
+MeasuredField measureResiduals(const JudgedViews& judged, const BlockField& field,
+                               const std::vector<float>& wanted, const Progress& progress) {
+  const auto make = [&](std::size_t b) {
+    std::vector<Probe> probes;
+    PaddedBlock<1, 1> near;
+    loadPadded(field.blocks, field.values.data(), b, kUnknown, near);
+    for (std::uint32_t i = 0; i < kSize; ++i) {
+      if (!(wanted[b * kSize + i] > 0)) continue;
+      const Index3 v = leafOffset(static_cast<int>(i));
+      const Eigen::Vector3d gradient(near.at(v.x() + 1, v.y(), v.z()) - near.at(v.x() - 1, v.y(), v.z()),
+                                     near.at(v.x(), v.y() + 1, v.z()) - near.at(v.x(), v.y() - 1, v.z()),
+                                     near.at(v.x(), v.y(), v.z() + 1) - near.at(v.x(), v.y(), v.z() - 1));
+      const double length = gradient.norm();
+      if (!(length > 0)) continue;
+      const Eigen::Vector3d normal = gradient / length;
+      const float value = near.at(v.x(), v.y(), v.z());
+      // The field may be steeper or flatter than a distance.
+      const double steepness = std::max(length / (2 * field.frame.voxel), 0.25);
+      const Eigen::Vector3d voxel = field.frame.toWorld(Index3(field.blocks.origin(b) + v));
+      probes.push_back({i, value > 0 ? 1.0f : -1.0f, voxel - value / steepness * normal, normal});
+    }
+    return probes;
+  };
+  return measure(judged, field, ResidualMeter(judged.sensor, field.frame.voxel), make, "refine surface",
+                 progress);
+}
+
+}  // namespace vdbfuse
