@@ -41,9 +41,9 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
       fillUnseenCavities(cells.octree, cells.tiles, sensorPositions(judged), cut_options.border, cut.labels);
 
   timer.start("surface");
-  SurfaceField surface = signedField(
-      judged, {cells.octree, cells.tiles, cut.labels, cells.support, cells.sigma, cut_options}, support,
-      {options.smoothing_voxels, kSupported, options.completion}, progress);
+  SurfaceField surface =
+      signedField(judged, {cells.octree, cells.tiles, cut.labels, cells.support, cells.sigma, cut_options},
+                  support, {options.smoothing_voxels, kSupported, options.completion}, progress);
   result.mesh = extractSurface(surface.distance, progress);
   describeVertices(support, result);
 

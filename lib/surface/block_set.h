@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of 8³ cells that know their neighbours: the sparse grid of loops that pass over it hundreds of times.
+// Blocks of 8³ cells that know their neighbours: the sparse grid of loops that pass over it hundreds of
+// times. Values lie in plain arrays, 512 a block, in the order of leafOffset().
 #pragma once
 
 #include <algorithm>
@@ -7,20 +8,22 @@
 #include <cstdint>
 #include <vector>
 
+#include "vdbfuse/base/parallel.h"
 #include "vdbfuse/volume/leaf_index.h"
 
 namespace vdbfuse {
 
 inline constexpr std::uint32_t kNoBlock = 0xffffffff;
+inline constexpr std::size_t kBlockSize = ScalarGrid::kLeafSize;
 
 class BlockSet {
  public:
-  static constexpr std::size_t kBlockSize = ScalarGrid::kLeafSize;
-
   /// Origins are multiples of 8, in any order, repeats allowed.
   explicit BlockSet(std::vector<Index3> origins = {});
 
   std::size_t count() const { return origins_.size(); }
+  /// Values of arrays that hold 512 a block.
+  std::size_t valueCount() const { return count() * kBlockSize; }
   /// In increasing order of (x, y, z).
   const Index3& origin(std::size_t block) const { return origins_[block]; }
   const std::vector<Index3>& origins() const { return origins_; }
@@ -35,6 +38,31 @@ class BlockSet {
   std::vector<std::array<std::uint32_t, 27>> neighbours_;
 };
 
+/// Calls visit(b) for the numbers 0 … count − 1 of blocks, in parallel.
+template <class Visit>
+void forEachBlock(std::size_t count, const Visit& visit) {
+  constexpr std::size_t kBlocksPerTask = 16;
+  parallelFor(count, kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) visit(b);
+  });
+}
+
+/// Lists of origins made block by block, as one list.
+std::vector<Index3> joined(const std::vector<std::vector<Index3>>& parts);
+
+/// Appends the origins of all blocks that meet the cells low … high.
+void appendBlocks(const Index3& low, const Index3& high, std::vector<Index3>& origins);
+
+/// Values at the voxels of a grid; origins of blocks in its index coordinates.
+struct BlockField {
+  GridFrame frame;
+  BlockSet blocks;
+  std::vector<float> values;
+
+  float* block(std::size_t b) { return &values[b * kBlockSize]; }
+  const float* block(std::size_t b) const { return &values[b * kBlockSize]; }
+};
+
 /// A block's values with a margin of `Below` cells before and `Above` after it along each axis.
 template <int Below, int Above>
 struct PaddedBlock {
@@ -46,30 +74,31 @@ struct PaddedBlock {
   }
   float& at(int x, int y, int z) { return values[place(x, y, z)]; }
   float at(int x, int y, int z) const { return values[place(x, y, z)]; }
+  float at(const Index3& cell) const { return at(cell.x(), cell.y(), cell.z()); }
 };
 
-/// The values of a block and of its neighbours; `missing` where there is no block. `values`: 512 a block.
+/// Loads a block's values and those of its neighbours from `values`; `missing` where there is no block.
 template <int Below, int Above>
 void loadPadded(const BlockSet& blocks, const float* values, std::size_t block, float missing,
                 PaddedBlock<Below, Above>& out) {
-  for (int bx = Below > 0 ? -1 : 0; bx <= (Above > 0 ? 1 : 0); ++bx) {
-    for (int by = Below > 0 ? -1 : 0; by <= (Above > 0 ? 1 : 0); ++by) {
-      for (int bz = Below > 0 ? -1 : 0; bz <= (Above > 0 ? 1 : 0); ++bz) {
-        const std::uint32_t from = blocks.neighbour(block, bx, by, bz);
-        const auto first = [](int b) { return b < 0 ? -Below : 8 * b; };
-        const auto last = [](int b) { return b < 0 ? 0 : b == 0 ? 8 : 8 + Above; };
-        for (int x = first(bx); x < last(bx); ++x) {
-          for (int y = first(by); y < last(by); ++y) {
-            float* to = &out.at(x, y, first(bz));
-            const int count = last(bz) - first(bz);
-            if (from == kNoBlock) {
-              std::fill_n(to, count, missing);
-            } else {
-              const int place = (x & 7) * 64 + (y & 7) * 8 + (first(bz) & 7);
-              std::copy_n(values + from * BlockSet::kBlockSize + place, count, to);
-            }
-          }
-        }
+  const auto step = [](int i) { return i < 0 ? -1 : i < 8 ? 0 : 1; };
+  for (int x = -Below; x < 8 + Above; ++x) {
+    for (int y = -Below; y < 8 + Above; ++y) {
+      float* row = &out.at(x, y, 0);
+      const std::size_t place = leafPlace({x, y, 0});
+      const auto from = [&](int z) -> const float* {
+        const std::uint32_t b = blocks.neighbour(block, step(x), step(y), z);
+        return b == kNoBlock ? nullptr : values + b * kBlockSize + place;
+      };
+      if constexpr (Below > 0) {
+        const float* below = from(-1);
+        for (int z = -Below; z < 0; ++z) row[z] = below ? below[8 + z] : missing;
+      }
+      const float* own = from(0);
+      for (int z = 0; z < 8; ++z) row[z] = own ? own[z] : missing;
+      if constexpr (Above > 0) {
+        const float* above = from(1);
+        for (int z = 0; z < Above; ++z) row[8 + z] = above ? above[z] : missing;
       }
     }
   }

@@ -34,9 +34,9 @@ void CellPyramid::read(int level, const Index3& origin, PyramidBlock& out) const
 void CellPyramid::add(int level, const Index3& origin, std::size_t cell, PyramidBlock& out) const {
   const int own = octree_.levels[cell];
   const Index3 low = (octree_.lowest(cell) - octree_.origin) / (1 << level) - origin;
-  const auto evidence = static_cast<float>(
-      std::clamp<double>(sigma_[cell], -energy_.max_evidence, energy_.max_evidence) * energy_.lambda *
-      octree_.frame.voxel * (1 << level) / kFacesPerArea);
+  const auto evidence =
+      static_cast<float>(std::clamp<double>(sigma_[cell], -energy_.max_evidence, energy_.max_evidence) *
+                         energy_.lambda * octree_.frame.voxel * (1 << level) / kFacesPerArea);
   if (own < level) {
     const auto i = static_cast<std::size_t>(low.x() * 64 + low.y() * 8 + low.z());
     const float share = std::ldexp(1.0f, 3 * (own - level));

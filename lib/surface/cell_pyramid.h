@@ -12,11 +12,11 @@ namespace vdbfuse {
 
 /// 8³ cells of one level, in the order of leafOffset().
 struct PyramidBlock {
-  static constexpr std::uint8_t kMixed = 0xfe;   ///< the octree is finer here
-  static constexpr std::uint8_t kBeyond = 0xff;  ///< outside the domain
+  static constexpr std::uint8_t kMixed = 0xfe;        ///< the octree is finer here
+  static constexpr std::uint8_t kBeyond = 0xff;       ///< outside the domain
   std::array<float, ScalarGrid::kLeafSize> solid;     ///< share of the cell that is labelled inside
   std::array<float, ScalarGrid::kLeafSize> evidence;  ///< λ σ · side: what an inside cell pays, in its faces
-  std::array<float, ScalarGrid::kLeafSize> support;   ///< mean of C
+  std::array<float, ScalarGrid::kLeafSize> support;       ///< mean of C
   std::array<std::uint8_t, ScalarGrid::kLeafSize> level;  ///< of the octree's cell that holds it
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "surface/block_set.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/volume/leaf_index.h"
 
@@ -10,16 +11,6 @@ namespace vdbfuse {
 namespace {
 
 constexpr std::size_t kTilesPerTask = 1024;
-
-// Blocks that meet the voxels low … high.
-void appendBlocks(const Index3& low, const Index3& high, std::vector<Index3>& out) {
-  const Index3 first = leafOrigin(low), last = leafOrigin(high);
-  for (int x = first.x(); x <= last.x(); x += 8) {
-    for (int y = first.y(); y <= last.y(); y += 8) {
-      for (int z = first.z(); z <= last.z(); z += 8) out.emplace_back(x, y, z);
-    }
-  }
-}
 
 // Both layers of voxels along the face of a cell, widened by reach − 1.
 void appendFace(const Octree& octree, std::size_t cell, int axis, int direction, int reach,

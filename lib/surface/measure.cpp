@@ -11,11 +11,12 @@
 namespace vdbfuse {
 namespace {
 
-constexpr std::size_t kSize = BlockSet::kBlockSize;
 constexpr std::size_t kBlocksPerTask = 8;
 constexpr std::size_t kBlocksPerPass = 16384;
-constexpr double kSameSide = 1.5;     // noise widths or voxels: beyond this a view sees another surface
-constexpr double kNear = 3.0;         // the same for residuals, noise widths; at least 1.5 voxels
+constexpr double kSameSide = 1.5;      // noise widths or voxels: beyond this a view sees another surface
+constexpr double kNear = 3.0;          // the same for residuals, noise widths; at least 1.5 voxels
+constexpr double kLookupPixels = 0.4;  // error of a depth looked up at the nearest pixel, footprints
+constexpr double kSlackPixels = 0.1;   // error of a depth between pixels, footprints
 constexpr double kLeastCosine = 0.2;  // incidence of pixels without a normal, and the least that is looked at
 
 // A place where the depth maps are asked.
@@ -30,7 +31,26 @@ struct Probe {
 struct PreparedView {
   const JudgedView* view;
   Projector projector;
-  Eigen::Matrix3d camera_from_world;
+
+  explicit PreparedView(const JudgedView& v)
+      : view(&v),
+        projector(v.projection, v.world_from_camera),
+        rays_meet_(std::holds_alternative<Pinhole>(v.projection) ||
+                   std::holds_alternative<Spherical>(v.projection)) {}
+
+  /// How a point that the view sees at `seen` moves in the world when its depth grows by 1.
+  Eigen::Vector3d along(const Eigen::Vector3d& point, const PixelDepth& seen) const {
+    if (rays_meet_) return (point - view->world_from_camera.translation()) / seen.depth;
+    const Eigen::Vector3d further = unproject(view->projection, seen.x, seen.y, seen.depth + 1);
+    return view->world_from_camera * further - point;
+  }
+  /// False only when the view can see no surface at the point with this normal.
+  bool mightFace(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
+    return !rays_meet_ || normal.dot(point - view->world_from_camera.translation()) < 0;
+  }
+
+ private:
+  bool rays_meet_;
 };
 
 // The mean signed distance of a voxel.
@@ -46,11 +66,12 @@ class DistanceMeter {
     if (measured == kInvalidDepth) return;
     const double distance = measured - seen->depth;
     if (std::abs(distance) > 3 * voxel_ + 3 * sensor_.noise.at(measured)) return;
-    const double noise = lookupNoise(sensor_, view.projection, measured);
-    if (-probe.side * distance > kSameSide * std::max(voxel_, noise)) return;
+    const double own = sensor_.noise.at(measured),
+                 slack = kLookupPixels * footprint(view.projection, measured);
+    const double variance = own * own + slack * slack;
+    if (-probe.side * distance > kSameSide * std::max(voxel_, std::sqrt(variance))) return;
     const double cosine = std::max<double>(view.incidence(seen->x, seen->y), kLeastCosine);
-    const double weight =
-        view.weight * (1 - view.outlier(seen->x, seen->y)) * cosine * cosine / (noise * noise);
+    const double weight = view.weight * (1 - view.outlier(seen->x, seen->y)) * cosine * cosine / variance;
     probe.distance += weight * distance * cosine;
     probe.weight += weight;
   }
@@ -67,6 +88,7 @@ class ResidualMeter {
 
   void add(const PreparedView& prepared, Probe& probe) const {
     const JudgedView& view = *prepared.view;
+    if (!prepared.mightFace(probe.point, probe.normal)) return;
     const std::optional<PixelDepth> seen = prepared.projector.place(probe.point);
     if (!seen) return;
     const int x = static_cast<int>(seen->x + 0.5), y = static_cast<int>(seen->y + 0.5);
@@ -75,16 +97,15 @@ class ResidualMeter {
     const double noise = sensor_.noise.at(nearest);
     const double reach = std::max(1.5 * voxel_, kNear * noise);
     if (std::abs(nearest - seen->depth) > reach / kLeastCosine) return;
-    // Points at the same pixel move along this direction when their depth grows by 1.
-    const Eigen::Vector3d along = unproject(view.projection, seen->x, seen->y, seen->depth + 1) -
-                                  unproject(view.projection, seen->x, seen->y, seen->depth);
-    const double slope = -(prepared.camera_from_world * probe.normal).dot(along);
+    const Eigen::Vector3d along = prepared.along(probe.point, *seen);
+    const double slope = -probe.normal.dot(along);
     const double cosine = slope / along.norm();
     if (cosine < kLeastCosine) return;  // seen from behind, or hardly
     const double residual = (interpolated(view, *seen, nearest, noise) - seen->depth) * slope;
     if (std::abs(residual) > reach) return;
-    const double slack = lookupNoise(sensor_, view.projection, nearest);
-    const double weight = view.weight * (1 - view.outlier(x, y)) * cosine * cosine / (slack * slack);
+    const double slack = kSlackPixels * footprint(view.projection, nearest);
+    const double weight =
+        view.weight * (1 - view.outlier(x, y)) * cosine * cosine / (noise * noise + slack * slack);
     probe.distance += weight * residual;
     probe.weight += weight;
   }
@@ -109,6 +130,58 @@ class ResidualMeter {
   double voxel_;
 };
 
+// The point of a field's surface that is nearest to a voxel, in a block's coordinates.
+struct FootPoint {
+  static constexpr int kMargin = 3;
+  PaddedBlock<kMargin, kMargin> field;
+  Eigen::Vector3d normal;  ///< unit, outwards
+  double distance = 0;     ///< of the voxel from it, voxels, > 0 outside
+
+  /// False where the field has no slope, or is not known.
+  bool find(const Index3& v) {
+    Eigen::Vector3d gradient;
+    for (int a = 0; a < 3; ++a) {
+      const Index3 step = Index3::Unit(a);
+      gradient[a] = 0.5 * (field.at(v + step) - field.at(v - step));
+    }
+    const double slope = gradient.norm();
+    if (!(slope > 0)) return false;
+    normal = gradient / slope;
+    // The field may be steeper or flatter than a distance, and bend: secants.
+    const double least = kLeastSlope * slope_scale;
+    double per_voxel = std::max(slope, least), value = field.at(v);
+    distance = 0;
+    for (int step = 0; step < kSteps; ++step) {
+      const double before = distance;
+      distance = std::clamp(before + value / per_voxel, -kFurthest, kFurthest);
+      const double next = interpolate(v.cast<double>() - distance * normal);
+      if (std::isnan(next) || distance == before) break;
+      per_voxel = std::max((value - next) / (distance - before), least);
+      value = next;
+    }
+    return true;
+  }
+  double slope_scale = 1;  ///< of a distance: length of a voxel
+
+ private:
+  static constexpr double kLeastSlope = 0.25, kFurthest = 2.0;
+  static constexpr int kSteps = 3;
+
+  double interpolate(const Eigen::Vector3d& p) const {
+    const Index3 low = p.array().floor().cast<int>();
+    const Eigen::Vector3d t = p - low.cast<double>();
+    double sum = 0;
+    for (int k = 0; k < 8; ++k) {
+      const Index3 d(k >> 2, k >> 1 & 1, k & 1);
+      const Eigen::Vector3d w =
+          d.cast<double>().cwiseProduct(t) +
+          (1 - d.cast<double>().array()).matrix().cwiseProduct((1 - t.array()).matrix());
+      sum += w.prod() * field.at(low + d);
+    }
+    return sum;
+  }
+};
+
 // Asks all views about the probes of blocks [begin, end). Windows of views pass by on the outside.
 template <class Meter>
 void askViews(const JudgedViews& judged, const BlockField& field, const Meter& meter, std::size_t begin,
@@ -117,9 +190,7 @@ void askViews(const JudgedViews& judged, const BlockField& field, const Meter& m
   forEachWindow(judged.views, [&](std::size_t first, std::size_t last) {
     std::vector<PreparedView> views;
     for (std::size_t i = first; i < last; ++i) {
-      const JudgedView& view = judged.views[i];
-      views.push_back({&view, Projector(view.projection, view.world_from_camera),
-                       view.world_from_camera.linear().transpose()});
+      views.emplace_back(judged.views[i]);
     }
     parallelFor(probes.size(), kBlocksPerTask, [&](std::size_t low, std::size_t high) {
       for (std::size_t b = low; b < high; ++b) {
@@ -152,7 +223,7 @@ MeasuredField measure(const JudgedViews& judged, const BlockField& field, const 
     for (std::size_t b = 0; b < probes.size(); ++b) {
       for (const Probe& probe : probes[b]) {
         if (!(probe.weight > 0)) continue;
-        const std::size_t voxel = (begin + b) * kSize + probe.voxel;
+        const std::size_t voxel = (begin + b) * kBlockSize + probe.voxel;
         result.distance[voxel] = static_cast<float>(probe.distance / probe.weight);
         result.weight[voxel] = static_cast<float>(probe.weight);
       }
@@ -168,8 +239,8 @@ MeasuredField measureDistances(const JudgedViews& judged, const BlockField& side
                                const std::vector<float>& wanted, const Progress& progress) {
   const auto make = [&](std::size_t b) {
     std::vector<Probe> probes;
-    for (std::uint32_t i = 0; i < kSize; ++i) {
-      if (!(wanted[b * kSize + i] > 0)) continue;
+    for (std::uint32_t i = 0; i < kBlockSize; ++i) {
+      if (!(wanted[b * kBlockSize + i] > 0)) continue;
       const Index3 voxel = sides.blocks.origin(b) + leafOffset(static_cast<int>(i));
       probes.push_back({i, sides.block(b)[i], sides.frame.toWorld(voxel)});
     }
@@ -179,26 +250,22 @@ MeasuredField measureDistances(const JudgedViews& judged, const BlockField& side
                  progress);
 }
 
-MeasuredField measureResiduals(const JudgedViews& judged, const BlockField& field,
-                               const std::vector<float>& wanted, const Progress& progress) {
+MeasuredField measureResiduals(const JudgedViews& judged, const std::vector<float>& wanted, BlockField& field,
+                               const Progress& progress) {
+  const BlockField before = field;
   const auto make = [&](std::size_t b) {
     std::vector<Probe> probes;
-    PaddedBlock<1, 1> near;
-    loadPadded(field.blocks, field.values.data(), b, kUnknown, near);
-    for (std::uint32_t i = 0; i < kSize; ++i) {
-      if (!(wanted[b * kSize + i] > 0)) continue;
+    FootPoint foot;
+    foot.slope_scale = field.frame.voxel;
+    loadPadded(before.blocks, before.values.data(), b, kUnknown, foot.field);
+    for (std::uint32_t i = 0; i < kBlockSize; ++i) {
+      if (!(wanted[b * kBlockSize + i] > 0)) continue;
       const Index3 v = leafOffset(static_cast<int>(i));
-      const Eigen::Vector3d gradient(near.at(v.x() + 1, v.y(), v.z()) - near.at(v.x() - 1, v.y(), v.z()),
-                                     near.at(v.x(), v.y() + 1, v.z()) - near.at(v.x(), v.y() - 1, v.z()),
-                                     near.at(v.x(), v.y(), v.z() + 1) - near.at(v.x(), v.y(), v.z() - 1));
-      const double length = gradient.norm();
-      if (!(length > 0)) continue;
-      const Eigen::Vector3d normal = gradient / length;
-      const float value = near.at(v.x(), v.y(), v.z());
-      // The field may be steeper or flatter than a distance.
-      const double steepness = std::max(length / (2 * field.frame.voxel), 0.25);
+      if (!foot.find(v)) continue;
+      const double distance = foot.distance * field.frame.voxel;
+      field.block(b)[i] = static_cast<float>(distance);
       const Eigen::Vector3d voxel = field.frame.toWorld(Index3(field.blocks.origin(b) + v));
-      probes.push_back({i, value > 0 ? 1.0f : -1.0f, voxel - value / steepness * normal, normal});
+      probes.push_back({i, distance > 0 ? 1.0f : -1.0f, voxel - distance * foot.normal, foot.normal});
     }
     return probes;
   };

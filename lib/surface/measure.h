@@ -10,16 +10,7 @@
 
 namespace vdbfuse {
 
-/// Values of the voxels of blocks, 512 each; origins in grid coordinates.
-struct BlockField {
-  GridFrame frame;
-  BlockSet blocks;
-  std::vector<float> values;
-
-  float* block(std::size_t b) { return &values[b * BlockSet::kBlockSize]; }
-  const float* block(std::size_t b) const { return &values[b * BlockSet::kBlockSize]; }
-};
-
+/// 512 values a block.
 struct MeasuredField {
   std::vector<float> distance;  ///< > 0 outside, length; kUnknown where no view says anything
   std::vector<float> weight;    ///< 1/variance of the distance, 1/length²; 0 where there is none
@@ -31,10 +22,11 @@ struct MeasuredField {
 MeasuredField measureDistances(const JudgedViews& judged, const BlockField& sides,
                                const std::vector<float>& wanted, const Progress& progress = {});
 
-/// How far `field` (signed distances) is from the measurements, > 0 where it should grow, at the voxels whose
-/// `wanted` is not 0. Looks along the normal at the point of the surface nearest to the voxel, so that
-/// neither slant nor curvature matters; depths are interpolated between pixels of one surface.
-MeasuredField measureResiduals(const JudgedViews& judged, const BlockField& field,
-                               const std::vector<float>& wanted, const Progress& progress = {});
+/// How far `field` is from the measurements, > 0 where it should grow, at the voxels whose `wanted` is not 0;
+/// its values there become distances, by its own slope. Looks along the normal at the point of the surface
+/// nearest to the voxel, so that neither slant nor curvature matters; depths are interpolated between pixels
+/// of one surface.
+MeasuredField measureResiduals(const JudgedViews& judged, const std::vector<float>& wanted, BlockField& field,
+                               const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -10,7 +10,6 @@
 namespace vdbfuse {
 namespace {
 
-constexpr std::size_t kSize = BlockSet::kBlockSize;
 constexpr std::size_t kBlocksPerTask = 64;
 constexpr int kPasses = 4;  // a surface that is a voxel off needs one or two
 
@@ -18,22 +17,21 @@ std::vector<std::size_t> contradictions(const std::vector<float>& field, const s
                                         const BlockField& sides) {
   std::vector<std::vector<std::size_t>> parts(chunkCount(sides.blocks.count(), kBlocksPerTask));
   parallelFor(sides.blocks.count(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin * kSize; v < end * kSize; ++v) {
+    for (std::size_t v = begin * kBlockSize; v < end * kBlockSize; ++v) {
       if (may_change[v] > 0 && field[v] * sides.values[v] < 0) parts[begin / kBlocksPerTask].push_back(v);
     }
   });
   std::vector<std::size_t> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  std::stable_sort(all.begin(), all.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(field[a]) > std::abs(field[b]);
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [&](std::size_t a, std::size_t b) { return std::abs(field[a]) > std::abs(field[b]); });
   return all;
 }
 
 // False next to blocks that are not there.
 bool canChange(const BlockField& sides, std::size_t voxel) {
-  const std::size_t block = voxel / kSize;
-  const Index3 v = leafOffset(static_cast<int>(voxel % kSize));
+  const std::size_t block = voxel / kBlockSize;
+  const Index3 v = leafOffset(static_cast<int>(voxel % kBlockSize));
   Neighbourhood inside = 0;
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
@@ -41,9 +39,7 @@ bool canChange(const BlockField& sides, std::size_t voxel) {
         const Index3 w = v + Index3(dx, dy, dz);
         const std::uint32_t b = sides.blocks.neighbour(block, w.x() >> 3, w.y() >> 3, w.z() >> 3);
         if (b == kNoBlock) return false;
-        const std::size_t place =
-            static_cast<std::size_t>((w.x() & 7) * 64 + (w.y() & 7) * 8 + (w.z() & 7));
-        if (sides.values[b * kSize + place] < 0) inside |= neighbourBit(dx, dy, dz);
+        if (sides.values[b * kBlockSize + leafPlace(w)] < 0) inside |= neighbourBit(dx, dy, dz);
       }
     }
   }

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <bit>
-#include <cstdlib>
 
 namespace vdbfuse {
 namespace {
@@ -26,6 +25,18 @@ constexpr Adjacency adjacency(int steps) {
 }
 constexpr Adjacency kFace = adjacency(1), kEdge = adjacency(2);
 
+// What can be reached from the middle in so many steps within `set`.
+Neighbourhood geodesic(Neighbourhood set, const Adjacency& adjacent, int steps) {
+  Neighbourhood reached = set & adjacent[kCentre];
+  for (int step = 1; step < steps; ++step) {
+    Neighbourhood more = reached;
+    for (Neighbourhood front = reached; front != 0; front &= front - 1)
+      more |= adjacent[static_cast<std::size_t>(std::countr_zero(front))] & set;
+    reached = more;
+  }
+  return reached;
+}
+
 // Whether the voxels next to the middle are all in one component of `set`, and there is one at all.
 bool isOneComponent(Neighbourhood set, const Adjacency& adjacent) {
   const Neighbourhood next = set & adjacent[kCentre];
@@ -44,7 +55,9 @@ bool isOneComponent(Neighbourhood set, const Adjacency& adjacent) {
 
 bool isSimple(Neighbourhood inside) {
   constexpr Neighbourhood kAll = (Neighbourhood{1} << 27) - 1, kOwn = Neighbourhood{1} << kCentre;
-  return isOneComponent(inside & ~kOwn, kEdge) && isOneComponent(~inside & kAll & ~kOwn, kFace);
+  const Neighbourhood solid = geodesic(inside & ~kOwn, kEdge, 2);
+  const Neighbourhood empty = geodesic(~inside & kAll & ~kOwn, kFace, 3);
+  return isOneComponent(solid, kEdge) && isOneComponent(empty, kFace);
 }
 
 }  // namespace vdbfuse

@@ -4,12 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "vdbfuse/base/parallel.h"
-
 namespace vdbfuse {
 namespace {
 
-constexpr std::size_t kSize = BlockSet::kBlockSize;
 constexpr int kRadius = 2;
 using Patch = PaddedBlock<kRadius, kRadius>;
 using Weights = std::array<float, 2 * kRadius + 1>;
@@ -17,7 +14,8 @@ using Weights = std::array<float, 2 * kRadius + 1>;
 Weights gaussian(double sigma) {
   Weights weights;
   for (int k = -kRadius; k <= kRadius; ++k)
-    weights[static_cast<std::size_t>(k + kRadius)] = static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma)));
+    weights[static_cast<std::size_t>(k + kRadius)] =
+        static_cast<float>(std::exp(-0.5 * k * k / (sigma * sigma)));
   return weights;
 }
 
@@ -45,22 +43,19 @@ void alongAxis(int axis, const Weights& weights, Patch& patch) {
 
 std::vector<float> smoothed(const BlockSet& blocks, const std::vector<float>& values,
                             const std::vector<float>& weights, double sigma) {
-  constexpr std::size_t kBlocksPerTask = 8;
   const Weights kernel = gaussian(sigma);
   std::vector<float> products(values.size()), result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) products[i] = weights[i] > 0 ? weights[i] * values[i] : 0;
-  parallelFor(blocks.count(), kBlocksPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      Patch sum, total;
-      loadPadded(blocks, products.data(), b, 0.0f, sum);
-      loadPadded(blocks, weights.data(), b, 0.0f, total);
-      for (int axis = 0; axis < 3; ++axis) alongAxis(axis, kernel, sum), alongAxis(axis, kernel, total);
-      for (int i = 0; i < static_cast<int>(kSize); ++i) {
-        const Index3 v = leafOffset(i);
-        const float weight = total.at(v.x(), v.y(), v.z());
-        result[b * kSize + static_cast<std::size_t>(i)] =
-            weight > 0 ? sum.at(v.x(), v.y(), v.z()) / weight : kUnknown;
-      }
+  forEachBlock(blocks.count(), [&](std::size_t b) {
+    Patch sum, total;
+    loadPadded(blocks, products.data(), b, 0.0f, sum);
+    loadPadded(blocks, weights.data(), b, 0.0f, total);
+    for (int axis = 0; axis < 3; ++axis) alongAxis(axis, kernel, sum), alongAxis(axis, kernel, total);
+    for (int i = 0; i < static_cast<int>(kBlockSize); ++i) {
+      const Index3 v = leafOffset(i);
+      const float weight = total.at(v.x(), v.y(), v.z());
+      result[b * kBlockSize + static_cast<std::size_t>(i)] =
+          weight > 0 ? sum.at(v.x(), v.y(), v.z()) / weight : kUnknown;
     }
   });
   return result;

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "surface/block_set.h"
-#include "vdbfuse/base/progress.h"
 
 namespace vdbfuse {
 
@@ -27,8 +26,10 @@ struct VariationProblem {
 
 struct VariationState {
   std::vector<float> u;
-  /// The dual variable: 8 a cube, [block][corner][cube], corner = 4 dx + 2 dy + dz. Empty: zero.
+  /// The dual variables p of the blocks in which cubes have a free corner, kDualSize each
+  /// (variation_kernels.h), and where those of a block are, or kNoBlock. Empty: zero everywhere.
   std::vector<float> dual;
+  std::vector<std::uint32_t> dual_of;
 };
 
 /// What is true of a state whatever it is: primal ≥ minimum ≥ dual.
@@ -37,7 +38,10 @@ struct VariationGap {
   double area = 0;  ///< Σ 2 std over all cubes with a free corner, faces
 };
 
-/// `steps` iterations.
+/// Makes room for the dual variables that the problem's free cells need; those it needs no more become zero.
+void makeRoom(const VariationProblem& problem, VariationState& state);
+
+/// So many iterations. The same for every number of threads.
 void iterate(const VariationProblem& problem, int steps, VariationState& state);
 
 VariationGap gapOf(const VariationProblem& problem, const VariationState& state);

@@ -14,10 +14,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Row = hn::CappedTag<float, 8>;
 
-// p ← projection of p + s K ū onto |p| ≤ ρ̄ in a block's cubes, s = ½.
 void ascendRows(const PaddedBlock<0, 1>& u, const float* price, RowMask rows, float* dual) {
   const Row d;
-  const auto half_step = hn::Set(d, 0.5f * 0.70710678f), eighth = hn::Set(d, 0.125f);
+  const auto step = hn::Set(d, kDualStep * 0.70710678f), eighth = hn::Set(d, 0.125f);
   for (; rows != 0; rows &= rows - 1) {
     const int row = __builtin_ctzll(rows), x = row >> 3, y = row & 7;
     for (std::size_t z = 0; z < 8; z += hn::Lanes(d)) {
@@ -26,13 +25,12 @@ void ascendRows(const PaddedBlock<0, 1>& u, const float* price, RowMask rows, fl
       };
       const auto u0 = load(0, 0, 0), u1 = load(0, 0, 1), u2 = load(0, 1, 0), u3 = load(0, 1, 1),
                  u4 = load(1, 0, 0), u5 = load(1, 0, 1), u6 = load(1, 1, 0), u7 = load(1, 1, 1);
-      const auto sum = hn::Add(hn::Add(hn::Add(u0, u1), hn::Add(u2, u3)),
-                               hn::Add(hn::Add(u4, u5), hn::Add(u6, u7)));
+      const auto sum =
+          hn::Add(hn::Add(hn::Add(u0, u1), hn::Add(u2, u3)), hn::Add(hn::Add(u4, u5), hn::Add(u6, u7)));
       const auto mean = hn::Mul(sum, eighth);
-      float* p = dual + static_cast<std::size_t>(8 * row) + z;
+      float* p = dual + dualPlace(8 * static_cast<std::size_t>(row), 0) + z;
       const auto moved = [&](std::size_t corner, auto value) {
-        return hn::MulAdd(half_step, hn::Sub(value, mean),
-                          hn::LoadU(d, p + corner * BlockSet::kBlockSize));
+        return hn::MulAdd(step, hn::Sub(value, mean), hn::LoadU(d, p + 8 * corner));
       };
       const auto p0 = moved(0, u0), p1 = moved(1, u1), p2 = moved(2, u2), p3 = moved(3, u3),
                  p4 = moved(4, u4), p5 = moved(5, u5), p6 = moved(6, u6), p7 = moved(7, u7);
@@ -45,7 +43,7 @@ void ascendRows(const PaddedBlock<0, 1>& u, const float* price, RowMask rows, fl
       const auto length = hn::Sqrt(hn::Max(squares, hn::Set(d, 1e-30f)));
       const auto scale = hn::Min(hn::Set(d, 1.0f), hn::Div(limit, length));
       const auto store = [&](std::size_t corner, auto value) {
-        hn::StoreU(hn::Mul(value, scale), d, p + corner * BlockSet::kBlockSize);
+        hn::StoreU(hn::Mul(value, scale), d, p + 8 * corner);
       };
       store(0, p0), store(1, p1), store(2, p2), store(3, p3);
       store(4, p4), store(5, p5), store(6, p6), store(7, p7);
@@ -61,13 +59,13 @@ HWY_INLINE void divergence(const DualPatch& dual, const float* evidence, int row
   for (int dx = 0; dx < 2; ++dx) {
     for (int dy = 0; dy < 2; ++dy) {
       const int bx = x < dx ? 4 : 0, by = y < dy ? 2 : 0;
-      const std::size_t place = static_cast<std::size_t>(((x - dx) & 7) * 64 + ((y - dy) & 7) * 8);
+      const std::size_t from = leafPlace({x - dx, y - dy, 0});
       const float* own = dual.below[bx + by];
       const float* below = dual.below[bx + by + 1];
       const std::size_t corner = static_cast<std::size_t>(4 * dx + 2 * dy);
-      const float* p0 = own + corner * BlockSet::kBlockSize + place;
-      const float* p1 = own + (corner + 1) * BlockSet::kBlockSize + place;
-      shifted[0] += below[(corner + 1) * BlockSet::kBlockSize + place + 7];
+      const float* p0 = own + dualPlace(from, corner);
+      const float* p1 = own + dualPlace(from, corner + 1);
+      shifted[0] += below[dualPlace(from, corner + 1) + 7];
       for (std::size_t z = 0; z < 8; z += hn::Lanes(d)) {
         hn::StoreU(hn::Add(hn::LoadU(d, straight + z), hn::LoadU(d, p0 + z)), d, straight + z);
         hn::StoreU(hn::Add(hn::LoadU(d, shifted + 1 + z), hn::LoadU(d, p1 + z)), d, shifted + 1 + z);
@@ -81,9 +79,8 @@ HWY_INLINE void divergence(const DualPatch& dual, const float* evidence, int row
   }
 }
 
-// u ← u − τ (Kᵀp + f) within [0, 1], τ = ½ where free; ū = 2 u⁺ − u.
 void descendRows(const DualPatch& dual, const float* evidence, const float* free, RowMask rows, float* u,
-             float* ahead) {
+                 float* ahead) {
   const Row d;
   for (; rows != 0; rows &= rows - 1) {
     const int row = __builtin_ctzll(rows);
@@ -92,7 +89,7 @@ void descendRows(const DualPatch& dual, const float* evidence, const float* free
     for (std::size_t z = 0; z < 8; z += hn::Lanes(d)) {
       const std::size_t i = static_cast<std::size_t>(8 * row) + z;
       const auto old = hn::LoadU(d, u + i);
-      const auto step = hn::Mul(hn::Set(d, 0.5f), hn::LoadU(d, free + i));
+      const auto step = hn::Mul(hn::Set(d, kPrimalStep), hn::LoadU(d, free + i));
       auto next = hn::NegMulAdd(step, hn::LoadU(d, slope + z), old);
       next = hn::Min(hn::Max(next, hn::Zero(d)), hn::Set(d, 1.0f));
       hn::StoreU(next, d, u + i);

@@ -6,8 +6,14 @@
 
 namespace vdbfuse {
 
-/// Dual variables of a block: [corner][cube], corner = 4 dx + 2 dy + dz.
-inline constexpr std::size_t kDualSize = 8 * BlockSet::kBlockSize;
+/// Dual variables of a block: [row][corner][z], row = 8 x + y, corner = 4 dx + 2 dy + dz.
+inline constexpr std::size_t kDualSize = 8 * kBlockSize;
+inline constexpr std::size_t dualPlace(std::size_t cube, std::size_t corner) {
+  return cube / 8 * 64 + corner * 8 + cube % 8;
+}
+
+/// s τ ‖K‖² ≤ 1. Of the ratios 1/4, 1, 4 and 16 the fastest by a third.
+inline constexpr float kDualStep = 1.0f, kPrimalStep = 0.25f;
 
 /// Rows of 8 cells along z: bit 8 x + y of a block is set where there is something to do.
 using RowMask = std::uint64_t;
@@ -18,10 +24,10 @@ struct DualPatch {
   const float* below[8];
 };
 
-/// p ← projection of p + s K ū onto |p| ≤ ρ̄, s = ½, in a block's cubes.
+/// p ← projection of p + s K ū onto |p| ≤ ρ̄ in a block's cubes.
 void ascend(const PaddedBlock<0, 1>& ahead, const float* price, RowMask rows, float* dual);
 
-/// u⁺ = u − τ (Kᵀp + f) within [0, 1], τ = ½ where free; ahead = 2 u⁺ − u.
+/// u⁺ = u − τ (Kᵀp + f) within [0, 1] where free; ahead = 2 u⁺ − u.
 void descend(const DualPatch& dual, const float* evidence, const float* free, RowMask rows, float* u,
              float* ahead);
 

@@ -40,6 +40,14 @@ void addNoise(Spoilt& s) {
   }
 }
 
+void quantise(Spoilt& s) {
+  const double quantum = s.options.quantum;
+  if (quantum <= 0) return;
+  for (float& d : s.depth) {
+    if (d > 0) d = static_cast<float>(std::max(1.0, std::round(d / quantum)) * quantum);
+  }
+}
+
 // What lies behind a pixel: the furthest depth around it, 0 where the neighbourhood sees nothing; the pixel's
 // own depth when nothing is behind.
 double depthBehind(const Image<float>& truth, int x, int y, int radius) {
@@ -149,6 +157,7 @@ void measure(SyntheticView& view, const SynthOptions& options, Random random) {
   if (options.hard) shiftPatches(s);
   if (options.hard) mixSilhouettes(s);
   throwOutliers(s);
+  quantise(s);
   dropPixels(s);
   forgiveSmallMistakes(s);
   view.view.map.confidence = drawConfidence(s);

@@ -69,13 +69,14 @@ bool contains(const SceneRegionShape& shape, const Vector3d& point) {
   return std::visit(Contains{point}, shape);
 }
 
-std::vector<std::string> sceneNames() { return {"sphere", "box", "torus", "figure"}; }
+std::vector<std::string> sceneNames() { return {"sphere", "box", "torus", "figure", "ball"}; }
 
 Scene makeScene(const std::string& name, const SceneOptions& options) {
   if (!(options.cell > 0)) throw InvalidArgument("cell", "must be positive");
   const std::optional<synth::Shape> shape = synth::shapeNamed(name);
   if (!shape) throw InvalidArgument("scene", "unknown name '" + name + "'");
-  const ToUnit unit = toUnit(shape->bounds);
+  ToUnit unit = toUnit(shape->bounds);
+  if (name == "ball") unit.scale = 1.0 / shape->bounds.sizes().x();
   Scene scene;
   scene.name = name;
   scene.distance = [unit, native = shape->distance](const Vector3d& p) {

@@ -100,7 +100,7 @@ double boxDistance(const Vector3d& point, const Vector3d& center, const Vector3d
 }
 
 std::optional<Shape> shapeNamed(const std::string& name) {
-  if (name == "sphere") return sphere();
+  if (name == "sphere" || name == "ball") return sphere();
   if (name == "box") return box();
   if (name == "torus") return torus();
   if (name == "figure") return figure();

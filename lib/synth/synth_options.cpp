@@ -25,6 +25,9 @@ std::vector<std::string> validate(const SynthOptions& o) {
   require(o.noise_scale >= 0 && std::isfinite(o.noise_scale), "the noise scale must not be negative");
   require(!o.noise_px || (*o.noise_px >= 0 && std::isfinite(*o.noise_px)),
           "the matching error must not be negative");
+  require(o.quantum >= 0 && std::isfinite(o.quantum), "the step of depths must not be negative");
+  require(!o.focal_px || (*o.focal_px > 0 && std::isfinite(*o.focal_px)),
+          "the focal length must be positive");
   require(o.baseline > 0, "the baseline must be positive");
   require(isShare(o.outliers), "the share of outliers must lie in [0, 1]");
   require(isShare(o.missing), "the share of missing pixels must lie in [0, 1]");
@@ -42,12 +45,25 @@ SynthOptions hardened(SynthOptions options) {
 }
 
 double focalLength(const SynthOptions& options) {
+  if (options.focal_px) return *options.focal_px;
   constexpr double kMargin = 1.03, kRoomFocal = 0.75;
   const double half_side = 0.5 * std::min(options.width, options.height);
   if (options.arc == Arc::Room) return 2 * half_side * kRoomFocal;
   const double reach =
       std::sqrt(kCameraDistance * kCameraDistance - kObjectRadius * kObjectRadius) / kObjectRadius;
   return half_side / kMargin * reach;
+}
+
+SynthOptions kinectOptions() {
+  SynthOptions options;
+  options.views = 24;
+  options.arc = Arc::Upper;
+  options.noise_law = SynthNoise::StructuredLight;
+  options.noise_scale = 0.0012 + 0.0019 * 0.6 * 0.6;
+  options.quantum = 0.001;
+  options.focal_px = 525;
+  options.confidence = ConfidenceKind::None;
+  return options;
 }
 
 double noiseScale(const SynthOptions& options) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// completion_benchmark [--mesh FILE ...]: does the grid show in what was invented? Each scene is seen from one
-// side only, reconstructed, and once more with all cameras turned by 30° about (1, 2, 3); the second mesh is
-// turned back. With the isotropic completion and without.
+// completion_benchmark [--mesh FILE ...]: does the grid show in what was invented? Each scene is seen from
+// one side only, reconstructed, and once more with all cameras turned by 30° about (1, 2, 3); the second mesh
+// is turned back. With the isotropic completion and without.
 //   fill: triangles of which no corner is supported.
 //   distance: from samples of one fill to the other mesh, both ways together, voxels.
 //   bends: share of the fill's edges longer than half a voxel along which the normal turns by more than 0.25
@@ -42,15 +42,25 @@ void turn(TriangleMesh& mesh, const Eigen::Matrix3f& rotation) {
   for (Eigen::Vector3f& n : mesh.normals) n = rotation * n;
 }
 
-TriangleMesh fillOf(const TriangleMesh& mesh) {
+// The triangles without a supported corner, and further than so many rings of triangles from one.
+TriangleMesh fillOf(const TriangleMesh& mesh, int rings) {
   TriangleMesh fill = mesh;
-  std::erase_if(fill.triangles, [&](const Triangle& t) {
-    return std::max({mesh.support[t[0]], mesh.support[t[1]], mesh.support[t[2]]}) >= kSupported;
-  });
+  std::vector<bool> measured(mesh.vertices.size());
+  for (std::size_t v = 0; v < measured.size(); ++v) measured[v] = mesh.support[v] >= kSupported;
+  const auto touches = [&](const Triangle& t) { return measured[t[0]] || measured[t[1]] || measured[t[2]]; };
+  for (int ring = 0; ring < rings; ++ring) {
+    std::vector<bool> more = measured;
+    for (const Triangle& t : mesh.triangles) {
+      if (touches(t)) more[t[0]] = more[t[1]] = more[t[2]] = true;
+    }
+    measured = std::move(more);
+  }
+  std::erase_if(fill.triangles, touches);
   return fill;
 }
 
-void appendDistances(const TriangleMesh& from, const TriangleMesh& to, double voxel, std::vector<double>& out) {
+void appendDistances(const TriangleMesh& from, const TriangleMesh& to, double voxel,
+                     std::vector<double>& out) {
   const ClosestPoint closest(to);
   for (const SurfaceSample& sample : sampleSurface(from, 50000, 1))
     out.push_back(closest.query(sample.point).distance / voxel);
@@ -75,8 +85,8 @@ void addShape(const TriangleMesh& fill, double voxel, Shape& shape) {
       const std::uint32_t p = t[static_cast<std::size_t>(k)], q = t[static_cast<std::size_t>((k + 1) % 3)];
       const double length = (fill.vertices[p] - fill.vertices[q]).cast<double>().norm() / voxel;
       if (length < kLongEnough) continue;
-      const double angle = std::acos(std::clamp(fill.normals[p].cast<double>().dot(fill.normals[q].cast<double>()),
-                                                -1.0, 1.0));
+      const double angle = std::acos(
+          std::clamp(fill.normals[p].cast<double>().dot(fill.normals[q].cast<double>()), -1.0, 1.0));
       shape.edges += 1, shape.bends += angle / length > kBend ? 1 : 0;
     }
   }
@@ -99,8 +109,12 @@ void measure(const std::string& name, const SyntheticScan& scan, CompletionOptio
   Reconstruction straight = reconstruct(scan.views(), options);
   Reconstruction other = reconstruct(turned(scan, rotation), options);
   Shape shape;
-  TriangleMesh first = fillOf(straight.mesh), second = fillOf(other.mesh);
+  TriangleMesh first = fillOf(straight.mesh, 0), second = fillOf(other.mesh, 0);
   addShape(first, options.voxel, shape), addShape(second, options.voxel, shape);
+  Shape inner;
+  constexpr int kRim = 5;
+  addShape(fillOf(straight.mesh, kRim), options.voxel, inner);
+  addShape(fillOf(other.mesh, kRim), options.voxel, inner);
   turn(other.mesh, rotation.transpose().cast<float>()), turn(second, rotation.transpose().cast<float>());
   std::vector<double> distances;
   appendDistances(first, other.mesh, options.voxel, distances);
@@ -113,10 +127,13 @@ void measure(const std::string& name, const SyntheticScan& scan, CompletionOptio
   evaluation.taus = {0.01};
   const Evaluation score = evaluate(straight.mesh, scan.scene().truth, evaluation);
   const bool isotropic = kind == CompletionOptions::Kind::Isotropic;
-  std::printf("| %s, %s | %.2f / %.2f / %.2f | %.2f %% | %.1f %% | %.4f | %.4f | %zu / %zu | %.2f of %.2f s |\n", name.c_str(),
-              isotropic ? "isotropic" : "none", at(0.5), at(0.99), at(1.0), 100 * shape.bends / shape.edges,
-              100 * shape.on_axis / shape.area, score.iou.value_or(0), score.scores[0].fscore,
-              score.topology.components, score.topology.open_edges, secondsOf(straight, "surface"), secondsOf(straight, ""));
+  std::printf(
+      "| %s, %s | %.2f / %.2f / %.2f | %.2f / %.2f %% | %.1f %% | %.4f | %.4f | %zu / %zu | %.2f of %.2f s "
+      "|\n",
+      name.c_str(), isotropic ? "isotropic" : "none", at(0.5), at(0.99), at(1.0),
+      100 * shape.bends / shape.edges, 100 * inner.bends / inner.edges, 100 * shape.on_axis / shape.area,
+      score.iou.value_or(0), score.scores[0].fscore, score.topology.components, score.topology.open_edges,
+      secondsOf(straight, "surface"), secondsOf(straight, ""));
   std::fflush(stdout);
   if (folder.empty()) return;
   const std::string file = folder + "/" + name + (isotropic ? "-isotropic" : "-none");
@@ -132,12 +149,16 @@ int main(int argc, char** argv) {
   app.add_option("--mesh", meshes, "closed meshes, seen from the front beside the sphere seen from above");
   app.add_option("--out", folder, "folder for all meshes, to be looked at")->check(CLI::ExistingDirectory);
   CLI11_PARSE(app, argc, argv);
-  std::printf("| scene, completion | distance: median / 99 %% / max | bends | on axis | IoU | F(.01) | components / open edges | surface step |\n|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| scene, completion | distance: median / 99 %% / max | bends | on axis | IoU | F(.01) | components / "
+      "open edges | surface step |\n|---|---|---|---|---|---|---|---|\n");
   SynthOptions options;
   options.views = 24;
   for (std::size_t i = 0; i <= meshes.size(); ++i) {
     options.arc = i == 0 ? Arc::Upper : Arc::Front;
-    const Scene scene = i == 0 ? makeScene("sphere") : sceneFromMesh(std::filesystem::path(meshes[i - 1]).stem().string(), readMesh(meshes[i - 1]));
+    const Scene scene =
+        i == 0 ? makeScene("sphere")
+               : sceneFromMesh(std::filesystem::path(meshes[i - 1]).stem().string(), readMesh(meshes[i - 1]));
     const SyntheticScan scan(scene, options);
     for (const auto kind : {CompletionOptions::Kind::None, CompletionOptions::Kind::Isotropic})
       measure(scan.scene().name, scan, kind, folder);

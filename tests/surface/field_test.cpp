@@ -64,13 +64,25 @@ TEST(BoundaryBlocks, HoldEveryVoxelWithinReachOfAnotherLabel) {
 class SignedField : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Smoothing, SignedField, testing::Values(0.0, 1.0, 2.0));
 
+FieldOptions uncompleted(double smoothing) {
+  FieldOptions options;
+  options.smoothing_voxels = smoothing;
+  options.completion.kind = CompletionOptions::Kind::None;
+  return options;
+}
+
 TEST_P(SignedField, ItsSignIsTheLabelOfEveryVoxelAndTheSurfaceIsClosed) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const test::RandomOctree random = randomOctree(seed, 24, 3);
     const std::vector<CellLabel> labels = randomLabels(random.octree, seed, 0.3);
     for (const CellLabel beyond : {CellLabel::Outside, CellLabel::Inside}) {
-      const ScalarGrid field = signedField({}, random.octree, tileCells(random.octree), labels,
-                                           supportAt(random.voxels), {GetParam(), 0.3f, beyond});
+      const CellTiles tiles = tileCells(random.octree);
+      const std::vector<float> none(random.octree.cellCount(), 0.0f);
+      CutOptions energy;
+      energy.border = beyond == CellLabel::Outside ? Border::Outside : Border::Solid;
+      const ScalarGrid field = signedField({}, {random.octree, tiles, labels, none, none, energy},
+                                           supportAt(random.voxels), uncompleted(GetParam()))
+                                   .distance;
       const LabelReader reader(random.octree, labels, beyond);
       for (std::size_t i = 0; i < field.leafCount(); ++i) {
         const ScalarGrid::Leaf leaf = field.leaf(i);
@@ -108,8 +120,10 @@ struct Plane {
       labels.push_back(octree.lowest(c).z() >= wall ? CellLabel::Inside : CellLabel::Outside);
   }
   ScalarGrid field(double smoothing) const {
-    return signedField(judged, octree, tileCells(octree), labels, support,
-                       {smoothing, 0.3f, CellLabel::Outside});
+    const CellTiles tiles = tileCells(octree);
+    const std::vector<float> none(octree.cellCount(), 0.0f);
+    return signedField(judged, {octree, tiles, labels, none, none, {}}, support, uncompleted(smoothing))
+        .distance;
   }
 };
 
@@ -118,7 +132,7 @@ TEST(SignedFieldOfAPlane, IsTheMeasuredDistanceWhereThereIsSupport) {
   const ScalarGrid field = plane.field(0.0);
   for (int z = 9; z <= 12; ++z) EXPECT_NEAR(field.at({12, 12, z}), 10.3 - z, 1e-5) << z;
   EXPECT_NEAR(field.at({12, 12, 8}), 2, 1e-6);
-  EXPECT_NEAR(plane.field(1.0).at({12, 12, 10}), 0.3, 0.05);
+  EXPECT_NEAR(plane.field(1.0).at({12, 12, 10}), 0.3, 0.01);
 }
 
 TEST(SignedFieldOfAPlane, IsHalfAVoxelWithoutSupport) {
@@ -129,10 +143,14 @@ TEST(SignedFieldOfAPlane, IsHalfAVoxelWithoutSupport) {
   EXPECT_FLOAT_EQ(field.at({12, 12, 11}), -0.5f);
 }
 
-TEST(SignedFieldOfAPlane, TheLabelWinsOverAMeasurementExactlyAtAVoxelOrBeyondIt) {
+TEST(SignedFieldOfAPlane, TheLabelDecidesWhereTheMeasurementLiesExactlyAtAVoxel) {
   EXPECT_LT(Plane(10.0f, 10).field(0.0).at({12, 12, 10}), 0);
   EXPECT_GT(Plane(10.0f, 11).field(0.0).at({12, 12, 10}), 0);
-  EXPECT_GT(Plane(9.9f, 11).field(0.0).at({12, 12, 10}), 0);
+}
+
+TEST(SignedFieldOfAPlane, TheMeasurementDecidesOnWhichSideOfTheSurfaceAVoxelLies) {
+  EXPECT_NEAR(Plane(9.9f, 11).field(0.0).at({12, 12, 10}), -0.1, 1e-5);
+  EXPECT_NEAR(Plane(10.4f, 10).field(1.0).at({12, 12, 10}), 0.4, 0.01);
 }
 
 TEST(SignedFieldOfAPlane, AViewThatContradictsTheLabelByFarDoesNotMove) {

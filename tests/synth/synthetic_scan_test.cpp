@@ -119,6 +119,26 @@ TEST(SyntheticScan, NoiseInPixelsIsAMatchingErrorOfTheStereoPair) {
   EXPECT_NEAR(noiseSigma(options, 1.5), further - 1.5, 0.01 * noiseSigma(options, 1.5));
 }
 
+TEST(SyntheticScan, TheKinectSeesTheBallFromAboveInMillimetres) {
+  SynthOptions options = kinectOptions();
+  EXPECT_NEAR(noiseSigma(options, 1.4), 0.0012 + 0.0019, 1e-9);
+  options.noise_scale = 0;
+  const SyntheticScan scan(makeScene("ball", {0.05}), options);
+  ASSERT_EQ(scan.size(), 24u);
+  const SyntheticView view = scan.render(5);
+  EXPECT_GT(view.view.world_from_camera.translation().z(), 0);
+  EXPECT_EQ(std::get<Pinhole>(view.view.projection).fx, 525);
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < view.true_depth.size(); ++i) {
+    const float depth = view.view.map.depth.data()[i], truth = view.true_depth.data()[i];
+    if (!(truth > 0)) continue;
+    ++seen;
+    ASSERT_NEAR(depth, truth, 0.00051);
+    ASSERT_NEAR(depth * 1000, std::round(depth * 1000), 1e-3);
+  }
+  EXPECT_GT(seen, 50000u);
+}
+
 TEST(SyntheticScan, OutliersHaveTheShareThatWasAskedForEverywhere) {
   SynthOptions options = exact(8);
   options.outliers = 0.1;

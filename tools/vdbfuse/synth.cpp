@@ -66,8 +66,8 @@ Scene loadScene(const Request& request) {
   const std::vector<std::string> names = sceneNames();
   const bool known = std::find(names.begin(), names.end(), request.scene) != names.end();
   if (!known && !fs::exists(request.scene))
-    throw InvalidArgument("SCENE",
-                          "'" + request.scene + "' is neither sphere, box, torus, figure nor a mesh file");
+    throw InvalidArgument(
+        "SCENE", "'" + request.scene + "' is neither sphere, box, torus, figure, ball nor a mesh file");
   Scene scene = known ? makeScene(request.scene)
                       : sceneFromMesh(fs::path(request.scene).stem().string(), readMesh(request.scene));
   scene.up = axisNamed(request.up);
@@ -104,6 +104,7 @@ ordered_json json(const SynthOptions& o) {
           {"missing", o.missing},
           {"confidence", nameOf(kConfidences, o.confidence)},
           {"background", nameOf(kBackgrounds, o.background)},
+          {"quantum", o.quantum},
           {"seed", o.seed}};
 }
 
@@ -217,6 +218,8 @@ void addSensorOptions(CLI::App& app, Request& request) {
   app.add_option("--missing", o.missing, "share of pixels without a depth")->capture_default_str();
   addChoice(app, "--confidence", request.confidence, kConfidences,
             "what confidences know of wrong pixels (informative; overlapping with --hard)");
+  app.add_option("--quantum", o.quantum, "step of the depths; 0: any depth")->capture_default_str();
+  app.add_option("--focal", o.focal_px, "focal length, pixels (default: the scene fills the image)");
   addChoice(app, "--background", o.background, kBackgrounds, "what lies behind the object")
       ->default_str("none");
 }
@@ -229,9 +232,16 @@ void addSynth(CLI::App& app, Action& action) {
       "synth",
       "Makes a scan whose truth is known: depth maps (MVSNet layout), truth.ply, scene.json.\n"
       "  vdbfuse synth figure scan --arc ring --views 72 --size 320x240 --outliers 0.1");
-  command->add_option("scene", request->scene, "sphere, box, torus, figure, or a closed mesh file")
+  command->add_option("scene", request->scene, "sphere, box, torus, figure, ball, or a closed mesh file")
       ->required();
   command->add_option("outdir", request->folder, "folder to write")->required();
+  // The first option: those after it overrule the preset.
+  command
+      ->add_option_function<std::string>(
+          "--preset", [request](const std::string&) { request->options = kinectOptions(); },
+          "kinect: 24 views from above, focal length 525, structured-light noise, depths in millimetres; for "
+          "the scene ball")
+      ->check(CLI::IsMember({"kinect"}));
   SynthOptions& o = request->options;
   command->add_option("--views", o.views, "number of cameras")->capture_default_str();
   addChoice(*command, "--arc", o.arc, kArcs, "where they stand")->default_str("full");

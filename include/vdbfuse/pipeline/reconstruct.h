@@ -51,9 +51,9 @@ struct ReconstructOptions {
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.6/max(voxel, median noise)
 
   // The surface.
-  double smoothing_voxels = 1.0;
-  CompletionOptions completion;  ///< of what nobody measured
-  double truncation = 0.0;  ///< of the TSDF, length; default max(4 voxels, 3 × noise)
+  double smoothing_voxels = 1.0;  ///< FieldOptions::smoothing_voxels
+  CompletionOptions completion;   ///< of what nobody measured
+  double truncation = 0.0;        ///< of the TSDF, length; default max(4 voxels, 3 × noise)
 
   /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
   /// /var/tmp) and pass by; where the cells do not fit, the reconstruction is refused before it begins.

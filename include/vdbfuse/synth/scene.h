@@ -52,7 +52,8 @@ struct Scene {
       -Eigen::Vector3d::UnitY();  ///< direction from the centre to a camera that sees the front
 };
 
-/// Names makeScene() knows: sphere, box, torus, figure.
+/// Names makeScene() knows: sphere, box, torus, figure, and ball: a sphere with a diameter, not a diagonal,
+/// of 1, so that in metres it is the one on which fusion programs have been compared.
 std::vector<std::string> sceneNames();
 
 /// How finely scenes defined by a signed distance are meshed.

@@ -51,6 +51,10 @@ struct SynthOptions {
   double noise_scale = 0.001;
   /// When given, replaces noise_scale by noise_px/(focal length · baseline): a matching error in pixels.
   std::optional<double> noise_px;
+  /// Depths are multiples of this, in diagonals of the scene. 0: any depth.
+  double quantum = 0;
+  /// Focal length in pixels; default: the scene just fits the image.
+  std::optional<double> focal_px;
   /// Of the stereo pair that noise_px speaks of, in diagonals of the scene: one third of the distance, 19°.
   double baseline = 0.5;
   /// Share of all pixels, in [0, 1], whose depth is replaced by one uniform in [near, far]. Pixels that see
@@ -72,6 +76,11 @@ std::vector<std::string> validate(const SynthOptions& options);
 
 /// What --hard stands for on the command line: mistakes as an honest stereo matcher makes them.
 SynthOptions hardened(SynthOptions options);
+
+/// A structured-light camera like the first Kinect, lengths in metres: 24 views of 640×480 from the upper
+/// half of the sphere, 1.5 m from the centre, focal length 525 pixels, depths in millimetres, noise 1.2 mm
+/// + 1.9 mm (z − 0.4)² (z in metres; Nguyen, Izadi, Lovell 2012), no confidence. For the scene `ball`.
+SynthOptions kinectOptions();
 
 /// Focal length, in pixels: the bounding sphere of the scene just fits the shorter side of the image; in a
 /// room a field of view of 67°.
