@@ -6,6 +6,7 @@
 
 #include "surface/boundary.h"
 #include "surface/completion.h"
+#include "surface/fragments.h"
 #include "surface/measure.h"
 #include "surface/settle.h"
 #include "surface/smooth.h"
@@ -13,10 +14,11 @@
 namespace vdbfuse {
 namespace {
 
-constexpr float kCutOff = 2.0f;    // voxels: largest distance that is kept
-constexpr float kClose = 1.25f;    // voxels: where the surface is measured once more
-constexpr float kPutBack = 0.05f;  // voxels: what a voxel gets whose value has the wrong sign
-constexpr double kRounding = 1.0;  // voxels: width of the first smoothing, which the second look corrects
+constexpr float kCutOff = 2.0f;       // voxels: largest distance that is kept
+constexpr float kClose = 1.25f;       // voxels: where the surface is measured once more
+constexpr float kPutBack = 0.05f;     // voxels: what a voxel gets whose value has the wrong sign
+constexpr std::size_t kFragment = 8;  // voxels: the completion leaves no smaller pieces
+constexpr double kRounding = 1.0;     // voxels: width of the first smoothing, which the second look corrects
 
 // The signed field while it is made. All arrays hold 512 values a block.
 struct FieldParts {
@@ -147,8 +149,9 @@ SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, 
   std::optional<CompletionReport> report;
   if (options.completion.kind == CompletionOptions::Kind::Isotropic)
     report = complete(cells, support, options, progress, parts);
-  std::vector<float> field = firstField(parts);
   const std::vector<float> invented = inventedVoxels(parts);
+  if (report) dropFragments(invented, kFragment, parts.sides);
+  std::vector<float> field = firstField(parts);
   if (options.smoothing_voxels > 0) {
     const std::vector<float> everywhere(field.size(), 1.0f);
     smoothInvented(parts.sides.blocks, invented, everywhere, field);
