@@ -24,8 +24,8 @@ constexpr double kRounding = 1.0;     // voxels: width of the first smoothing, w
 struct FieldParts {
   BlockField sides;
   std::vector<float> may_measure;  ///< 1 where the depth maps are asked
-  std::vector<float> measured;     ///< signed distance, kUnknown where nothing was measured
-  std::vector<float> completed;    ///< signed distance, kUnknown where nothing was completed
+  MeasuredField measured;
+  std::vector<float> completed;  ///< signed distance, kUnknown where nothing was completed
   float voxel() const { return static_cast<float>(sides.frame.voxel); }
 };
 
@@ -45,7 +45,7 @@ FieldParts measureSides(const JudgedViews& judged, const LabelledCells& cells, c
   FieldParts parts{labelledSides(cells, beyond), {}, {}, {}};
   parts.may_measure = nearBoundary(parts.sides);
   keepSupported(parts.sides.blocks, support, supported, parts.may_measure);
-  parts.measured = measureDistances(judged, parts.sides, parts.may_measure, progress).distance;
+  parts.measured = measureDistances(judged, parts.sides, parts.may_measure, progress);
   parts.completed.assign(parts.sides.values.size(), kUnknown);
   return parts;
 }
@@ -54,14 +54,15 @@ FieldParts measureSides(const JudgedViews& judged, const LabelledCells& cells, c
 CompletionReport complete(const LabelledCells& cells, const ScalarGrid& support, const FieldOptions& options,
                           const Progress& progress, FieldParts& parts) {
   const CellPyramid pyramid(cells.octree, cells.labels, cells.support, cells.sigma, cells.energy);
-  const CompletionData data{support, options.supported, parts.sides.blocks, parts.measured};
+  const CompletionData data{support, options.supported, parts.sides.blocks, parts.measured.distance};
   const Completion completion = completeSurface(pyramid, cells.tiles, data, options.completion, progress);
   std::vector<Index3> blocks = parts.sides.blocks.origins();
   completion.appendBlocksTo(blocks);
   BlockField sides =
       grownSides(parts.sides.frame, std::move(blocks),
                  [&](const Index3& origin, float* values) { completion.readSides(origin, values); });
-  parts.measured = moved(parts.measured, parts.sides.blocks, sides.blocks, kUnknown);
+  parts.measured.distance = moved(parts.measured.distance, parts.sides.blocks, sides.blocks, kUnknown);
+  parts.measured.weight = moved(parts.measured.weight, parts.sides.blocks, sides.blocks, 0.0f);
   parts.may_measure = moved(parts.may_measure, parts.sides.blocks, sides.blocks, 0.0f);
   parts.completed.resize(sides.values.size());
   forEachBlock(sides.blocks.count(), [&](std::size_t b) {
@@ -77,7 +78,7 @@ std::vector<float> firstField(const FieldParts& parts) {
   const float limit = kCutOff * parts.voxel();
   std::vector<float> field(near.size());
   for (std::size_t i = 0; i < field.size(); ++i) {
-    float value = parts.measured[i];
+    float value = parts.measured.distance[i];
     if (std::isnan(value)) value = parts.completed[i];
     if (std::isnan(value)) value = parts.sides.values[i] * (near[i] > 0 ? 0.5f * parts.voxel() : limit);
     field[i] = std::clamp(value, -limit, limit);
@@ -87,9 +88,9 @@ std::vector<float> firstField(const FieldParts& parts) {
 
 // 1 where the surface was completed.
 std::vector<float> inventedVoxels(const FieldParts& parts) {
-  std::vector<float> invented(parts.measured.size());
+  std::vector<float> invented(parts.measured.distance.size());
   for (std::size_t i = 0; i < invented.size(); ++i)
-    invented[i] = std::isnan(parts.measured[i]) && !std::isnan(parts.completed[i]) ? 1.0f : 0.0f;
+    invented[i] = std::isnan(parts.measured.distance[i]) && !std::isnan(parts.completed[i]) ? 1.0f : 0.0f;
   return invented;
 }
 
@@ -103,28 +104,29 @@ void smoothInvented(const BlockSet& blocks, const std::vector<float>& invented,
 }
 
 // Standard deviation, in voxels, of the Gaussian that smooths measurements of these weights as far as their
-// noise asks for: over a surface it takes 4 π σ² voxels together.
+// noise asks for: over a surface it takes 4 π σ² voxels together, and what is left of an error e bends the
+// surface by about e/(√(4 π) σ²).
 double smoothingFor(std::vector<float> weights, double voxel, double most) {
-  constexpr double kErrorLeft = 0.1, kLeast = 0.5;  // voxels
+  constexpr double kBendLeft = 0.1, kLeast = 0.5;  // radians; voxels
   std::erase(weights, 0.0f);
   if (weights.empty() || most <= kLeast) return most;
   const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2);
   std::nth_element(weights.begin(), middle, weights.end());
   const double error = 1 / (std::sqrt(*middle) * voxel);
-  return std::clamp(error / (kErrorLeft * std::sqrt(4 * std::numbers::pi)), kLeast, most);
+  return std::clamp(std::sqrt(error / (kBendLeft * std::sqrt(4 * std::numbers::pi))), kLeast, most);
 }
 
 // A second look, at the surface that the first one gave: what smoothing and slanted rays have moved is put
 // right, and only the difference is smoothed as far as the noise asks for.
-void refine(const JudgedViews& judged, const FieldParts& parts, double most_smoothing,
-            const Progress& progress, std::vector<float>& field) {
+void refine(const JudgedViews& judged, const FieldParts& parts, double smoothing, const Progress& progress,
+            std::vector<float>& field) {
   std::vector<float> close(field.size());
   for (std::size_t i = 0; i < field.size(); ++i)
     close[i] = parts.may_measure[i] > 0 && std::abs(field[i]) < kClose * parts.voxel() ? 1.0f : 0.0f;
   BlockField current{parts.sides.frame, parts.sides.blocks, std::move(field)};
   const MeasuredField residual = measureResiduals(judged, close, current, progress);
-  const double sigma = smoothingFor(residual.weight, parts.voxel(), most_smoothing);
-  const std::vector<float> change = smoothed(parts.sides.blocks, residual.distance, residual.weight, sigma);
+  const std::vector<float> change =
+      smoothed(parts.sides.blocks, residual.distance, residual.weight, smoothing);
   field = std::move(current.values);
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (close[i] > 0 && !std::isnan(change[i])) field[i] += change[i];
@@ -155,12 +157,13 @@ SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, 
   if (options.smoothing_voxels > 0) {
     const std::vector<float> everywhere(field.size(), 1.0f);
     smoothInvented(parts.sides.blocks, invented, everywhere, field);
-    field = smoothed(parts.sides.blocks, field, everywhere, kRounding);
-    refine(judged, parts, options.smoothing_voxels, progress, field);
+    const double smoothing = smoothingFor(parts.measured.weight, parts.voxel(), options.smoothing_voxels);
+    field = smoothed(parts.sides.blocks, field, everywhere, std::max(kRounding, smoothing));
+    refine(judged, parts, smoothing, progress, field);
   }
   std::vector<float> may_change = invented;
   for (std::size_t i = 0; i < may_change.size(); ++i) {
-    if (!std::isnan(parts.measured[i])) may_change[i] = 1;
+    if (!std::isnan(parts.measured.distance[i])) may_change[i] = 1;
   }
   settleSides(field, may_change, parts.sides);
   putBack(parts.sides, kPutBack * parts.voxel(), field);

@@ -39,10 +39,8 @@ void alongAxis(int axis, const Weights& weights, Patch& patch) {
   }
 }
 
-}  // namespace
-
-std::vector<float> smoothed(const BlockSet& blocks, const std::vector<float>& values,
-                            const std::vector<float>& weights, double sigma) {
+std::vector<float> smoothedOnce(const BlockSet& blocks, const std::vector<float>& values,
+                                const std::vector<float>& weights, double sigma) {
   const Weights kernel = gaussian(sigma);
   std::vector<float> products(values.size()), result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) products[i] = weights[i] > 0 ? weights[i] * values[i] : 0;
@@ -58,6 +56,22 @@ std::vector<float> smoothed(const BlockSet& blocks, const std::vector<float>& va
           weight > 0 ? sum.at(v.x(), v.y(), v.z()) / weight : kUnknown;
     }
   });
+  return result;
+}
+
+}  // namespace
+
+std::vector<float> smoothed(const BlockSet& blocks, const std::vector<float>& values,
+                            const std::vector<float>& weights, double sigma) {
+  constexpr double kWidest = 1.1;  // of one pass: more would feel the cut-off
+  const int passes = std::max(1, static_cast<int>(std::ceil(sigma * sigma / (kWidest * kWidest) - 1e-9)));
+  const double step = sigma / std::sqrt(passes);
+  std::vector<float> result = smoothedOnce(blocks, values, weights, step);
+  std::vector<float> known(values.size());
+  for (int pass = 1; pass < passes; ++pass) {
+    for (std::size_t i = 0; i < known.size(); ++i) known[i] = std::isnan(result[i]) ? 0.0f : 1.0f;
+    result = smoothedOnce(blocks, result, known, step);
+  }
   return result;
 }
 

@@ -51,7 +51,7 @@ struct ReconstructOptions {
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.6/max(voxel, median noise)
 
   // The surface.
-  double smoothing_voxels = 1.0;  ///< FieldOptions::smoothing_voxels
+  double smoothing_voxels = 2.0;  ///< FieldOptions::smoothing_voxels
   CompletionOptions completion;   ///< of what nobody measured
   double truncation = 0.0;        ///< of the TSDF, length; default max(4 voxels, 3 × noise)
 

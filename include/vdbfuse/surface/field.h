@@ -44,7 +44,7 @@ struct CompletionReport {
 struct FieldOptions {
   /// The largest standard deviation of the Gaussian that smooths what was measured, voxels: it is made as
   /// wide as the noise asks for, from 0.5 on. More is quieter and rounds edges. 0: no smoothing at all.
-  double smoothing_voxels = 1.0;
+  double smoothing_voxels = 2.0;
   /// Fewer agreeing views than this do not support a surface.
   float supported = 0.3f;
   CompletionOptions completion;
