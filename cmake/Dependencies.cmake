@@ -21,6 +21,7 @@ find_library(VDBFUSE_LZ4_LIBRARY lz4 REQUIRED)
 
 find_package(hwy CONFIG REQUIRED)
 find_package(embree 3 CONFIG REQUIRED)
+find_package(meshoptimizer CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET GLOBAL spng)
 find_package(libjpeg-turbo CONFIG REQUIRED)

@@ -20,7 +20,8 @@ struct Format {
 
 constexpr Format kFormats[] = {{".ply", io::parsePly, io::formatPly},
                                {".obj", io::parseObj, io::formatObj},
-                               {".stl", io::parseStl, io::formatStl}};
+                               {".stl", io::parseStl, io::formatStl},
+                               {".glb", nullptr, io::formatGlb}};
 
 const Format& formatOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -28,15 +29,17 @@ const Format& formatOf(const std::filesystem::path& path) {
   for (const Format& format : kFormats) {
     if (extension == format.extension) return format;
   }
-  throw IoError(path, "", "the extension .ply, .obj or .stl", extension.empty() ? "none" : extension);
+  throw IoError(path, "", "the extension .ply, .obj, .stl or .glb", extension.empty() ? "none" : extension);
 }
 
 std::size_t largestIndex(const Triangle& t) { return *std::max_element(t.begin(), t.end()); }
 
 void checkBeforeWriting(const TriangleMesh& mesh) {
   const auto fits = [&](std::size_t size) { return size == 0 || size == mesh.vertices.size(); };
-  if (!fits(mesh.normals.size()) || !fits(mesh.colors.size()) || !fits(mesh.support.size())) {
-    throw InvalidArgument("mesh", "normals, colors and support need one value a vertex or none at all");
+  if (!fits(mesh.normals.size()) || !fits(mesh.colors.size()) || !fits(mesh.support.size()) ||
+      !fits(mesh.confidence.size())) {
+    throw InvalidArgument("mesh",
+                          "normals, colors, support and confidence need one value a vertex or none at all");
   }
   for (const Triangle& t : mesh.triangles) {
     if (largestIndex(t) >= mesh.vertices.size()) {
@@ -66,6 +69,8 @@ void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
 
 TriangleMesh readMesh(const std::filesystem::path& path) {
   const Format& format = formatOf(path);
+  if (format.parse == nullptr)
+    throw IoError(path, "", "a mesh to read: .ply, .obj or .stl", format.extension);
   TriangleMesh mesh = format.parse(path, io::readFileBytes(path));
   checkAfterReading(path, mesh);
   return mesh;

@@ -68,6 +68,7 @@ TriangleMesh parseObj(const std::filesystem::path& path, std::string_view bytes)
 
 std::string formatObj(const TriangleMesh& mesh) {
   std::string text;
+  for (const std::string& comment : mesh.comments) text += "# " + comment + '\n';
   for (const Eigen::Vector3f& v : mesh.vertices) append(text, "v", v);
   for (const Eigen::Vector3f& n : mesh.normals) append(text, "vn", n);
   for (const Triangle& t : mesh.triangles) {

@@ -128,9 +128,9 @@ void skipElement(Values& values, const PlyElement& element) {
 }
 
 // What a vertex may carry that we keep, in the order of the numbers below.
-constexpr std::array<std::string_view, 10> kVertexNames = {"x",  "y",   "z",     "nx",   "ny",
-                                                           "nz", "red", "green", "blue", "quality"};
-constexpr std::size_t kNormal = 3, kColor = 6, kSupport = 9;
+constexpr std::array<std::string_view, 11> kVertexNames = {
+    "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "quality", "confidence"};
+constexpr std::size_t kNormal = 3, kColor = 6, kSupport = 9, kConfidence = 10;
 
 // For each property its place in kVertexNames, or the size of that list.
 struct VertexLayout {
@@ -166,6 +166,7 @@ void readVertices(const std::filesystem::path& path, Values& values, const PlyEl
   mesh.normals.resize(all(kNormal) ? count : 0);
   mesh.colors.resize(all(kColor) ? count : 0);
   mesh.support.resize(has[kSupport] ? count : 0);
+  mesh.confidence.resize(has[kConfidence] ? count : 0);
   std::array<double, kVertexNames.size()> v{};
   const auto vector = [&](std::size_t k) {
     return Eigen::Vector3f(static_cast<float>(v[k]), static_cast<float>(v[k + 1]),
@@ -185,6 +186,7 @@ void readVertices(const std::filesystem::path& path, Values& values, const PlyEl
       mesh.colors[i][k] = static_cast<std::uint8_t>(std::clamp(v[kColor + k], 0.0, 255.0));
     }
     if (!mesh.support.empty()) mesh.support[i] = static_cast<float>(v[kSupport]);
+    if (!mesh.confidence.empty()) mesh.confidence[i] = static_cast<float>(v[kConfidence]);
   }
 }
 
@@ -239,12 +241,14 @@ TriangleMesh readElements(const std::filesystem::path& path, std::string_view by
 }
 
 std::string headerOf(const TriangleMesh& mesh) {
-  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " +
-                     std::to_string(mesh.vertices.size()) +
-                     "\nproperty float x\nproperty float y\nproperty float z\n";
+  std::string text = "ply\nformat binary_little_endian 1.0\n";
+  for (const std::string& comment : mesh.comments) text += "comment " + comment + "\n";
+  text += "element vertex " + std::to_string(mesh.vertices.size()) +
+          "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!mesh.normals.empty()) text += "property float nx\nproperty float ny\nproperty float nz\n";
   if (!mesh.colors.empty()) text += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   if (!mesh.support.empty()) text += "property float quality\n";
+  if (!mesh.confidence.empty()) text += "property float confidence\n";
   return text + "element face " + std::to_string(mesh.triangles.size()) +
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
@@ -264,12 +268,13 @@ TriangleMesh parsePly(const std::filesystem::path& path, std::string_view bytes)
 
 std::string formatPly(const TriangleMesh& mesh) {
   std::string bytes = headerOf(mesh);
-  bytes.reserve(bytes.size() + 31 * mesh.vertices.size() + 13 * mesh.triangles.size());
+  bytes.reserve(bytes.size() + 35 * mesh.vertices.size() + 13 * mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     append(bytes, mesh.vertices[i]);
     if (!mesh.normals.empty()) append(bytes, mesh.normals[i]);
     if (!mesh.colors.empty()) append(bytes, mesh.colors[i]);
     if (!mesh.support.empty()) append(bytes, mesh.support[i]);
+    if (!mesh.confidence.empty()) append(bytes, mesh.confidence[i]);
   }
   for (const Triangle& t : mesh.triangles) {
     bytes += '\3';

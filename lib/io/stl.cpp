@@ -107,6 +107,7 @@ TriangleMesh parseStl(const std::filesystem::path& path, std::string_view bytes)
 
 std::string formatStl(const TriangleMesh& mesh) {
   std::string bytes("binary STL, written by vdbfuse");
+  for (const std::string& comment : mesh.comments) bytes += "; " + comment;
   bytes.resize(kHeader, ' ');
   bytes.reserve(kCounted + kRecord * mesh.triangles.size());
   const auto count = static_cast<std::uint32_t>(mesh.triangles.size());

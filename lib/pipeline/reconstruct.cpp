@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "pipeline/cells.h"
 #include "pipeline/steps.h"
@@ -11,9 +12,28 @@
 #include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/pipeline/judge_scan.h"
 #include "vdbfuse/surface/extract.h"
+#include "vdbfuse/surface/simplify.h"
+#include "vdbfuse/surface/trim.h"
 
 namespace vdbfuse {
 namespace {
+
+// What a reader of the mesh should know of it; what was asked for is cut away.
+void describeMesh(const ReconstructOptions& options, Reconstruction& result) {
+  TriangleMesh& mesh = result.mesh;
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f %% of the area invented", 100 * result.invented_area_share);
+  if (options.method == Method::Visibility && options.trim == 0) mesh.comments.emplace_back("closed surface");
+  if (options.method == Method::Visibility) mesh.comments.emplace_back(text);
+  if (options.method == Method::Tsdf)
+    mesh.comments.emplace_back("open: no surface where space is unknown (Curless-Levoy)");
+  if (options.min_component > 0) result.components_dropped = dropSmallComponents(options.min_component, mesh);
+  if (options.trim > 0) trimUnsupported(static_cast<float>(options.trim), mesh);
+  if (options.simplify > 0 && !mesh.triangles.empty()) {
+    result.simplify_error = simplify({options.simplify, 0}, mesh).error;
+    mesh.normals = vertexNormals(mesh);
+  }
+}
 
 // The minimum of (1): the paper's section 3 from the depth maps on.
 void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
@@ -45,7 +65,8 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
       signedField(judged, {cells.octree, cells.tiles, cut.labels, cells.support, cells.sigma, cut_options},
                   support, {options.smoothing_voxels, kSupported, options.completion}, progress);
   result.mesh = extractSurface(surface.distance, progress);
-  describeVertices(support, result);
+  describeVertices(support, options.mu, result);
+  describeMesh(options, result);
 
   result.grid = describeGrid(cells.octree, support, domain);
   result.cut = CutReportSummary{cut.flow,
@@ -76,7 +97,8 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
   TsdfVolume volume = integrateTsdf(judged, frame, domain, {truncation}, progress);
   timer.start("surface");
   result.mesh = extractSurface(volume.distance, progress);
-  describeVertices(volume.weight, result);
+  describeVertices(volume.weight, options.mu, result);
+  describeMesh(options, result);
   result.grid = describeGrid(volume.distance, domain);
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids.push_back(std::move(volume.distance));
@@ -109,6 +131,8 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
   } else {
     cutVisibility(judged, frame, domain, options, progress, timer, result);
   }
+  if (result.mesh.triangles.empty() && (options.trim > 0 || options.min_component > 0))
+    throw Error("the result is empty: trim or min_component leaves nothing of the surface");
   if (result.mesh.triangles.empty()) {
     throw Error(
         "the result is empty: no surface inside the domain is supported by the depth maps "
@@ -117,6 +141,16 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
   result.steps = std::move(scan.steps);
   for (StepTime& step : timer.finish()) result.steps.push_back(std::move(step));
   return result;
+}
+
+ColorReport colorReconstruction(const ViewSequence& views, Reconstruction& result, const Progress& progress) {
+  constexpr double kWidths = 3;  // of the noise, or voxels: the same surface
+  StepTimer timer;
+  timer.start("colour");
+  const double tolerance = kWidths * std::max(result.grid.voxel, result.calibration.noise_scale);
+  const ColorReport report = colorVertices(views, {tolerance}, result.mesh, progress);
+  for (StepTime& step : timer.finish()) result.steps.push_back(std::move(step));
+  return report;
 }
 
 }  // namespace vdbfuse

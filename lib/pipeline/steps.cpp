@@ -57,6 +57,8 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(options.mu >= 0 && options.lambda >= 0, "mu and lambda must not be negative");
   require(options.smoothing_voxels >= 0 && options.smoothing_voxels <= 2,
           "smoothing_voxels must lie in [0, 2]");
+  require(options.trim >= 0, "trim must not be negative");
+  require(options.min_component >= 0, "min_component must not be negative");
   require(options.truncation >= 0, "truncation must be positive");
   return problems;
 }
@@ -176,13 +178,15 @@ std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged) {
   return positions;
 }
 
-void describeVertices(const ScalarGrid& support, Reconstruction& result) {
+void describeVertices(const ScalarGrid& support, double mu, Reconstruction& result) {
   TriangleMesh& mesh = result.mesh;
   mesh.normals = vertexNormals(mesh);
   mesh.support.assign(mesh.vertices.size(), 0.0f);
+  mesh.confidence.assign(mesh.vertices.size(), 0.0f);
   parallelFor(mesh.vertices.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       mesh.support[v] = support.interpolate(support.frame().toIndex(mesh.vertices[v].cast<double>()));
+      mesh.confidence[v] = 1 - std::exp(-static_cast<float>(mu) * mesh.support[v]);
     }
   });
   double all = 0, invented = 0;

@@ -42,7 +42,7 @@ EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& opt
 std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged);
 
 /// Normals, support of each vertex and the share of the area without any.
-void describeVertices(const ScalarGrid& support, Reconstruction& result);
+void describeVertices(const ScalarGrid& support, double mu, Reconstruction& result);
 
 GridReport describeGrid(const Octree& octree, const ScalarGrid& support, const Box& domain);
 GridReport describeGrid(const ScalarGrid& field, const Box& domain);

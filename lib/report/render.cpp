@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/report/render.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
@@ -86,6 +88,11 @@ class Painter {
   }
 
   Color baseColor(const RayHit& hit) const {
+    if (options_.coloring == MeshColoring::Vertex) {
+      const auto& [a, b, c] = mesh_.triangles[hit.triangle];
+      return (1 - hit.u - hit.v) * toColor(mesh_.colors[a]) + hit.u * toColor(mesh_.colors[b]) +
+             hit.v * toColor(mesh_.colors[c]);
+    }
     if (values_.empty()) return kClay;
     const double value = interpolated(hit, values_);
     if (options_.coloring == MeshColoring::Support) {
@@ -142,6 +149,8 @@ std::vector<std::string> validate(const RenderOptions& options, const TriangleMe
   require(options.up.norm() > 0, "up must not be zero");
   require(options.coloring != MeshColoring::Support || mesh.support.size() == mesh.vertices.size(),
           "the mesh carries no support");
+  require(options.coloring != MeshColoring::Vertex || mesh.colors.size() == mesh.vertices.size(),
+          "the mesh carries no colours");
   require(options.coloring != MeshColoring::Values || options.values.size() == mesh.vertices.size(),
           "there must be one value a vertex");
   return problems;
@@ -168,9 +177,13 @@ ViewHeader cameraLookingAt(const Vector3d& eye, const Vector3d& target, const Ve
 }
 
 ViewHeader framingCamera(const TriangleMesh& mesh, const Vector3d& up, int width, int height) {
+  return framingCamera(mesh, up, width, height, 0);
+}
+
+ViewHeader framingCamera(const TriangleMesh& mesh, const Vector3d& up, int width, int height, double angle) {
   constexpr double kMargin = 1.06;
   const Vector3d center = boundingBox(mesh).center(), front = frontFor(up), right = up.cross(front);
-  const Vector3d direction = (front + 0.6 * right + 0.35 * up).normalized();
+  const Vector3d direction = Eigen::AngleAxisd(angle, up) * (front + 0.6 * right + 0.35 * up).normalized();
   ViewHeader view = cameraLookingAt(center + direction, center, up, width, height);
   const auto& camera = std::get<Pinhole>(view.projection);
   // As near as all vertices allow.
@@ -182,6 +195,20 @@ ViewHeader framingCamera(const TriangleMesh& mesh, const Vector3d& up, int width
   }
   view.world_from_camera.translation() = center + distance * direction;
   return view;
+}
+
+Image<Rgb8> renderTurntable(const TriangleMesh& mesh, int count, int width, int height,
+                            const RenderOptions& options) {
+  const int columns = static_cast<int>(std::ceil(std::sqrt(count))), rows = (count + columns - 1) / columns;
+  Image<Rgb8> sheet(columns * width, rows * height, options.background);
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count;
+    const Image<Rgb8> picture = render(mesh, framingCamera(mesh, options.up, width, height, angle), options);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        sheet(k % columns * width + x, k / columns * height + y) = picture(x, y);
+  }
+  return sheet;
 }
 
 }  // namespace vdbfuse

@@ -231,27 +231,8 @@ class Extractor {
       }
     }
     splitFans(result, rimVertices());
-    dropUnused(result);
+    dropUnusedVertices(result);
     return result;
-  }
-
-  // Vertices next to unknown voxels may belong to no triangle.
-  static void dropUnused(TriangleMesh& mesh) {
-    constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> number(mesh.vertices.size(), kUnused);
-    for (const Triangle& t : mesh.triangles) {
-      for (const std::uint32_t v : t) number[v] = 0;
-    }
-    std::uint32_t next = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] == kUnused) continue;
-      mesh.vertices[next] = mesh.vertices[v];
-      number[v] = next++;
-    }
-    mesh.vertices.resize(next);
-    for (Triangle& t : mesh.triangles) {
-      for (std::uint32_t& v : t) v = number[v];
-    }
   }
 
   const ScalarGrid& field_;

@@ -53,8 +53,7 @@ void splitFans(TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices) {
         std::find_if(first, corners.end(), [&](const FanCorner& c) { return c.vertex != vertex; });
     for (auto fan = gatherFan(first, end); fan != end;) {
       const auto next = gatherFan(fan, end);
-      const auto copy = static_cast<std::uint32_t>(mesh.vertices.size());
-      mesh.vertices.push_back(Eigen::Vector3f(mesh.vertices[vertex]));
+      const std::uint32_t copy = appendCopy(mesh, vertex);
       for (; fan != next; ++fan) mesh.triangles[fan->triangle][fan->corner] = copy;
     }
     first = end;

@@ -37,7 +37,7 @@ struct Request {
   fs::path input, output, judgement, grids, json;
   SensorArguments sensor;
   ReconstructOptions reconstruct;
-  std::string border = "auto", thickness = "auto";
+  std::string border = "auto", thickness = "auto", color = "auto";
   int threads = 0;
   bool overwrite = false, quiet = false;
 };
@@ -79,6 +79,16 @@ void addEnergyOptions(CLI::App& app, Request& r) {
       ->check(CLI::Range(1e-6, 0.499))
       ->capture_default_str();
   app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap")->capture_default_str();
+  app.add_option("--trim", o.trim, "Cut away what fewer views than this agree on (0.3: what was invented)")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--min-component", o.min_component,
+                 "Drop components with a bounding box of a smaller diagonal, length; default: keep all")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--simplify", o.simplify, "Leave about so many triangles; flat parts get fewer")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--color", r.color, "auto: from the pictures, where the input has some")
+      ->check(CLI::IsMember({"auto", "none"}))
+      ->capture_default_str();
   choice(app, "--completion", o.completion.kind, kCompletions,
          "Where nothing was measured: a minimal surface, or the faces of the cut");
   app.add_option("--truncation", o.truncation, "Of --method tsdf; default 4 voxels")
@@ -149,6 +159,9 @@ JudgedScan judged(const DepthSet& set, Request& request, const Progress& progres
   return scan;
 }
 
+// Looks at one view: data sets have pictures for all of them, or for none.
+bool hasPictures(const ViewSequence& views) { return !views.load(0).map.color.empty(); }
+
 void fuse(Request request) {
   const ThreadLimit threads(request.threads);
   requireMeshFormat(request.output);
@@ -156,8 +169,12 @@ void fuse(Request request) {
   resolve(request);
   const DepthSet set = readScan(request.input, request.sensor, request.quiet ? Words::Keep : Words::Print);
   const ProgressLine line(request.quiet);
-  const Reconstruction result =
+  Reconstruction result =
       reconstruct(judged(set, request, line.progress()), request.reconstruct, line.progress());
+  if (request.color == "auto") {
+    const DepthSet pictures = readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load);
+    if (hasPictures(pictures.views)) colorReconstruction(pictures.views, result, line.progress());
+  }
   const FuseContext context{request.input,    request.judgement,   set.format,
                             set.views.size(), request.reconstruct, topology(result.mesh)};
   writeOutputs(request, result, context);
@@ -171,7 +188,7 @@ void addFuse(CLI::App& app, Action& action) {
   sub.footer("Example: vdbfuse fuse scans/ mesh.ply --voxel 0.002");
   auto request = std::make_shared<Request>();
   sub.add_option("INPUT", request->input, "Folder of depth maps")->required();
-  sub.add_option("OUT", request->output, "Mesh to write: .ply, .obj or .stl")->required();
+  sub.add_option("OUT", request->output, "Mesh to write: .ply, .obj, .stl or .glb")->required();
   addGridOptions(sub, *request);
   const std::vector<CLI::Option*> judged_before =
       addSensorOptions(sub, request->sensor, request->reconstruct);

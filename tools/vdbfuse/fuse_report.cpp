@@ -49,6 +49,9 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"balloon", o.evidence.balloon},
             {"mask_error", o.evidence.mask_error},
             {"depth_prior", o.prior_decay},
+            {"trim", o.trim},
+            {"min_component", o.min_component},
+            {"simplify", o.simplify},
             {"mu", o.mu}};
   if (result.cut)
     j.update({{"completion", result.cut->completion ? "isotropic" : "none"},
@@ -78,7 +81,10 @@ Json meshJson(const Reconstruction& result, const TopologyReport& t) {
           {"nonmanifold_edges", t.nonmanifold_edges},
           {"nonmanifold_vertices", t.nonmanifold_vertices},
           {"euler_number", t.euler_number},
-          {"invented_area_share", result.invented_area_share}};
+          {"invented_area_share", result.invented_area_share},
+          {"components_dropped", result.components_dropped},
+          {"simplify_error", result.simplify_error},
+          {"colored", !result.mesh.colors.empty()}};
 }
 
 Json stepsJson(const std::vector<StepTime>& steps) {
@@ -169,7 +175,9 @@ void printFuseReport(const Reconstruction& result, const FuseContext& context,
   std::printf("%.1f s, %.0f MiB\n", totalSeconds(result.steps),
               static_cast<double>(peakMemoryBytes()) / (1 << 20));
   if (result.cut && result.invented_area_share > 1.0 / 3) {
-    std::fprintf(stderr, "note: more than a third of the surface was invented, not measured\n");
+    std::fprintf(
+        stderr,
+        "note: more than a third of the surface was invented, not measured (--trim 0.3 cuts it away)\n");
   }
 }
 

@@ -29,6 +29,7 @@ struct Request {
   std::vector<double> eye, look, range;
   bool flat = false, cells = false, overwrite = false;
   int threads = 0;
+  int turntable = 0;
   int width = 0, height = 0;  // 0: that of the view of --from
 };
 
@@ -80,6 +81,7 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   options.up = axisNamed(request.up);
   if (request.color == "normal") options.coloring = MeshColoring::Normal;
   if (request.color == "support") options.coloring = MeshColoring::Support;
+  if (request.color == "vertex") options.coloring = MeshColoring::Vertex;
   if (request.color == "error") {
     options.coloring = MeshColoring::Values;
     options.values = distances(mesh, readMesh(request.reference));
@@ -107,6 +109,12 @@ void run(const Request& request) {
   }
   const TriangleMesh mesh = readMesh(request.input);
   const RenderOptions options = renderOptions(request, mesh);
+  if (request.turntable > 0) {
+    if (mesh.triangles.empty()) throw IoError(request.input, "", "a mesh", "no triangles");
+    writePng(request.output,
+             renderTurntable(mesh, request.turntable, request.width, request.height, options));
+    return;
+  }
   writePng(request.output, render(mesh, camera(request, mesh, options.up), options));
 }
 
@@ -129,6 +137,12 @@ void addRender(CLI::App& app, Action& action) {
           ->expected(3)
           ->type_name("x,y,z")
           ->excludes(from);
+  command
+      ->add_option("--turntable", request->turntable,
+                   "from so many sides around the axis that points up, in one picture; --size of each")
+      ->check(CLI::Range(1, 400))
+      ->excludes(from)
+      ->excludes(eye);
   command->add_option("--look", request->look, "what it looks at (default: the middle)")
       ->delimiter(',')
       ->expected(3)
@@ -136,9 +150,11 @@ void addRender(CLI::App& app, Action& action) {
       ->needs(eye);
   command->add_option("--up", request->up, "axis that points up")->check(axisCheck())->capture_default_str();
   command
-      ->add_option("--color", request->color,
-                   "support: agreeing views, orange where invented; error: distance from --reference")
-      ->check(CLI::IsMember({"shaded", "normal", "support", "error"}))
+      ->add_option(
+          "--color", request->color,
+          "support: agreeing views, orange where invented; vertex: the mesh's own colours; error: distance "
+          "from --reference")
+      ->check(CLI::IsMember({"shaded", "normal", "support", "vertex", "error"}))
       ->capture_default_str();
   command->add_option("--reference", request->reference, "mesh that --color error measures from");
   command->add_option("--range", request->range, "values at the two ends of the colours")

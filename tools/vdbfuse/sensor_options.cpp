@@ -82,9 +82,10 @@ void resolve(const SensorArguments& arguments, ReconstructOptions& options) {
   if (options.domain->isEmpty()) throw InvalidArgument("--bbox", "the lower corner must come first");
 }
 
-DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words) {
+DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words,
+                  ReadOptions::Color color) {
   ReadOptions read = arguments.read;
-  read.color = ReadOptions::Color::Skip;
+  read.color = color;
   DepthSet set = readDepthSet(input, read);
   if (arguments.views > 0) set.views = set.views.first(arguments.views);
   if (words == Words::Keep) return set;

@@ -36,7 +36,8 @@ std::optional<double> parseNumber(const std::string& text);
 
 enum class Words { Print, Keep };
 
-/// The data set without colour, cut to --views; its notes go to stderr.
-DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words);
+/// The data set cut to --views; its notes go to stderr.
+DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words,
+                  ReadOptions::Color color = ReadOptions::Color::Skip);
 
 }  // namespace vdbfuse::tool

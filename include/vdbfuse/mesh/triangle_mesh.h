@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "vdbfuse/geometry/box.h"
@@ -22,6 +23,10 @@ struct TriangleMesh {
   std::vector<Rgb8> colors;
   /// Number of views that agree with the surface at this vertex; 0 where it was invented.
   std::vector<float> support;
+  /// 1 − ρ = 1 − e^(−μ support) in [0, 1]: 0 where the surface was invented.
+  std::vector<float> confidence;
+  /// What a reader of the file should know, a line each, without line ends.
+  std::vector<std::string> comments;
 };
 
 Box boundingBox(const TriangleMesh& mesh);
@@ -31,6 +36,12 @@ double area(const TriangleMesh& mesh);
 
 /// Volume enclosed by a closed mesh; negative when it is inside out.
 double signedVolume(const TriangleMesh& mesh);
+
+/// Removes vertices that belong to no triangle, with their attributes.
+void dropUnusedVertices(TriangleMesh& mesh);
+
+/// Appends a vertex like `vertex`, with all its attributes, and returns its number.
+std::uint32_t appendCopy(TriangleMesh& mesh, std::uint32_t vertex);
 
 /// Area-weighted unit normals, a vertex each; zero for a vertex without area.
 std::vector<Eigen::Vector3f> vertexNormals(const TriangleMesh& mesh);

@@ -13,6 +13,7 @@
 #include "vdbfuse/mesh/triangle_mesh.h"
 #include "vdbfuse/octree/graph.h"
 #include "vdbfuse/sensor/view_sequence.h"
+#include "vdbfuse/surface/color.h"
 #include "vdbfuse/surface/field.h"
 
 namespace vdbfuse {
@@ -53,7 +54,11 @@ struct ReconstructOptions {
   // The surface.
   double smoothing_voxels = 2.0;  ///< FieldOptions::smoothing_voxels
   CompletionOptions completion;   ///< of what nobody measured
-  double truncation = 0.0;        ///< of the TSDF, length; default max(4 voxels, 3 × noise)
+  double trim = 0.0;              ///< cut away what fewer views than this agree on; 0: keep all
+  double min_component =
+      0.0;  ///< drop components with a bounding box of a smaller diagonal, length; 0: keep all
+  std::size_t simplify = 0;  ///< triangles to be left, about; 0: all
+  double truncation = 0.0;   ///< of the TSDF, length; default max(4 voxels, 3 × noise)
 
   /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
   /// /var/tmp) and pass by; where the cells do not fit, the reconstruction is refused before it begins.
@@ -118,6 +123,8 @@ struct Reconstruction {
   GridReport grid;
   std::optional<CutReportSummary> cut;  ///< nothing for the TSDF
   double invented_area_share = 0;       ///< share of the area that no view supports
+  std::size_t components_dropped = 0;   ///< below ReconstructOptions::min_component
+  double simplify_error = 0;            ///< SimplifyReport::error
   std::vector<ScalarGrid> grids;
   MemoryReport memory;
   std::vector<StepTime> steps;
@@ -128,5 +135,10 @@ struct Reconstruction {
 /// when the result would be empty. Deterministic: the same mesh for any number of threads.
 Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& options = {},
                            const Progress& progress = {});
+
+/// Colours the mesh from the views' pictures (colorVertices()). `views`: with pictures, which reconstruct()
+/// itself does not look at. The time it takes is added to the steps.
+ColorReport colorReconstruction(const ViewSequence& views, Reconstruction& result,
+                                const Progress& progress = {});
 
 }  // namespace vdbfuse

@@ -15,6 +15,7 @@ enum class MeshColoring {
   Support,  ///< by mesh.support: orange where the surface was invented, then from dark to light with more
             ///< views
   Values,   ///< by RenderOptions::values, dark blue to yellow
+  Vertex,   ///< the mesh's own colours
 };
 
 struct RenderOptions {
@@ -44,6 +45,15 @@ Image<Rgb8> render(const TriangleMesh& mesh, const ViewHeader& view, const Rende
 /// A pinhole camera that just shows all of the mesh, from the front (frontFor(up)), a little from its right
 /// and from above. REQUIRES: a mesh with extent; `up` a unit vector.
 ViewHeader framingCamera(const TriangleMesh& mesh, const Eigen::Vector3d& up, int width, int height);
+
+/// The same from another side, turned by `angle` (radians) around `up`.
+ViewHeader framingCamera(const TriangleMesh& mesh, const Eigen::Vector3d& up, int width, int height,
+                         double angle);
+
+/// Pictures of the mesh from `count` sides, a full turn around options.up, in rows of about as many columns
+/// as rows, from the top left; each of width × height pixels. REQUIRES: count > 0.
+Image<Rgb8> renderTurntable(const TriangleMesh& mesh, int count, int width, int height,
+                            const RenderOptions& options = {});
 
 /// A camera with a field of view of 40° along the longer side of its image.
 ViewHeader cameraLookingAt(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,

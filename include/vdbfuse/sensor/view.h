@@ -46,11 +46,19 @@ void applyMask(DepthMap& map);
 /// Turns every non-finite, zero or negative depth into kInvalidDepth. Readers call it once.
 void normaliseInvalid(Image<float>& depth);
 
+/// The camera of a picture that the depth sensor did not take itself.
+struct ColorSensor {
+  Projection projection;
+  RigidTransform world_from_camera = RigidTransform::Identity();
+};
+
 /// What is known of a view before its images are loaded.
 struct ViewHeader {
   std::string name;
   Projection projection;
   RigidTransform world_from_camera = RigidTransform::Identity();
+  /// Of DepthMap::color; none: the picture was taken by the depth sensor, or brought to its pixels.
+  std::optional<ColorSensor> color_sensor = std::nullopt;
 };
 
 /// A view with its images in memory.
