@@ -36,6 +36,7 @@ if(VDBFUSE_BUILD_TOOL)
 endif()
 if(VDBFUSE_BUILD_TESTS)
   find_package(GTest CONFIG REQUIRED)
+  find_package(assimp CONFIG REQUIRED)
 endif()
 
 # A compiler cache, where there is one, makes clean builds cheap.

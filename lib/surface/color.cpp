@@ -34,12 +34,15 @@ void add(const Sample& sample, Samples& samples) {
     std::swap(samples[k], samples[k - 1]);
 }
 
-std::uint8_t weightedMedian(const Samples& samples, std::size_t channel) {
+// Every picture has one vote: a good view of a mistake is a mistake. The better of two decides.
+std::uint8_t median(const Samples& samples, std::size_t channel) {
+  constexpr float kTie = 0.01f;
   std::array<std::pair<std::uint8_t, float>, kSamples> values;
   float total = 0;
   for (std::size_t k = 0; k < kSamples; ++k) {
-    values[k] = {samples[k].color[channel], samples[k].weight};
-    total += samples[k].weight;
+    const float share = samples[k].weight / samples.front().weight;
+    values[k] = {samples[k].color[channel], share > 0 ? 1 + kTie * share : 0};
+    total += values[k].second;
   }
   std::sort(values.begin(), values.end());
   float below = 0;
@@ -52,18 +55,18 @@ std::uint8_t weightedMedian(const Samples& samples, std::size_t channel) {
 
 std::optional<Rgb8> robustMean(const Samples& samples) {
   if (!(samples.front().weight > 0)) return std::nullopt;
-  Rgb8 median;
-  for (std::size_t c = 0; c < 3; ++c) median[c] = weightedMedian(samples, c);
+  Rgb8 middle;
+  for (std::size_t c = 0; c < 3; ++c) middle[c] = median(samples, c);
   std::array<float, 3> sum{};
   float total = 0;
   for (const Sample& sample : samples) {
     bool agrees = sample.weight > 0;
-    for (std::size_t c = 0; c < 3; ++c) agrees &= std::abs(sample.color[c] - median[c]) <= kAgreement;
+    for (std::size_t c = 0; c < 3; ++c) agrees &= std::abs(sample.color[c] - middle[c]) <= kAgreement;
     if (!agrees) continue;
     total += sample.weight;
     for (std::size_t c = 0; c < 3; ++c) sum[c] += sample.weight * sample.color[c];
   }
-  if (!(total > 0)) return median;
+  if (!(total > 0)) return middle;
   Rgb8 mean;
   for (std::size_t c = 0; c < 3; ++c) mean[c] = static_cast<std::uint8_t>(std::lround(sum[c] / total));
   return mean;

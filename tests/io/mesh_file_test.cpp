@@ -26,6 +26,7 @@ TriangleMesh withAttributes() {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     mesh.colors.push_back({static_cast<std::uint8_t>(i), 7, 255});
     mesh.support.push_back(static_cast<float>(i % 5));
+    mesh.confidence.push_back(static_cast<float>(i % 5) / 5);
   }
   return mesh;
 }
@@ -65,6 +66,7 @@ TEST(MeshFile, PlyKeepsEveryBitOfAMeshAndItsAttributes) {
   EXPECT_EQ(back.normals, mesh.normals);
   EXPECT_EQ(back.colors, mesh.colors);
   EXPECT_EQ(back.support, mesh.support);
+  EXPECT_EQ(back.confidence, mesh.confidence);
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
@@ -247,9 +249,9 @@ TEST(MeshFile, WhatIsNoFileIsSaidToBeNone) {
 
 TEST(MeshFile, AnUnknownExtensionIsRefusedBothWays) {
   EXPECT_EQ(messageOf<IoError>([] { readMesh("a.off"); }),
-            "a.off: expected the extension .ply, .obj or .stl, found .off");
+            "a.off: expected the extension .ply, .obj, .stl or .glb, found .off");
   EXPECT_EQ(messageOf<IoError>([] { writeMesh("mesh", {}); }),
-            "mesh: expected the extension .ply, .obj or .stl, found none");
+            "mesh: expected the extension .ply, .obj, .stl or .glb, found none");
 }
 
 TEST(MeshFile, AMeshThatContradictsItselfIsNotWritten) {
@@ -257,7 +259,7 @@ TEST(MeshFile, AMeshThatContradictsItselfIsNotWritten) {
   TriangleMesh mesh = test::octahedron();
   mesh.support.resize(3);
   EXPECT_EQ(messageOf<InvalidArgument>([&] { writeMesh(folder / "a.ply", mesh); }),
-            "mesh: normals, colors and support need one value a vertex or none at all");
+            "mesh: normals, colors, support and confidence need one value a vertex or none at all");
   mesh.support.clear();
   mesh.triangles[0][1] = 6;
   EXPECT_EQ(messageOf<InvalidArgument>([&] { writeMesh(folder / "a.ply", mesh); }),
@@ -273,6 +275,26 @@ TEST(MeshFile, RealMeshesAreRead) {
   EXPECT_TRUE(isClosedManifold(topology(anchor)));
   EXPECT_EQ(topology(anchor).euler_number, 2 - 2 * 4);
   EXPECT_EQ(readMesh(data / "bunny-scans/bun000.ply").vertices.size(), 40256u);
+}
+
+TEST(MeshFile, CommentsStandInTheHeaderOfEveryFormat) {
+  TriangleMesh mesh = test::sphere(1.0, 1);
+  mesh.comments = {"closed surface", "1.5 % of the area invented"};
+  const TemporaryFolder folder;
+  for (const std::string name : {"a.ply", "a.obj", "a.stl", "a.glb"}) {
+    writeMesh(folder / name, mesh);
+    for (const std::string& comment : mesh.comments)
+      EXPECT_NE(readText(folder / name).find(comment), std::string::npos) << name;
+    if (name == "a.glb") continue;
+    EXPECT_EQ(readMesh(folder / name).triangles.size(), mesh.triangles.size()) << name;
+  }
+}
+
+TEST(MeshFile, AGlbIsWrittenAndNotRead) {
+  const TemporaryFolder folder;
+  writeMesh(folder / "a.glb", test::sphere(1.0, 1));
+  EXPECT_THAT(messageOf<IoError>([&] { readMesh(folder / "a.glb"); }),
+              testing::HasSubstr("expected a mesh to read: .ply, .obj or .stl, found .glb"));
 }
 
 }  // namespace

@@ -79,6 +79,38 @@ TEST(Render, InventedSurfaceIsOrangeAndSupportedSurfaceIsNot) {
   EXPECT_LT(std::abs(supported[0] - supported[1]), 40);
 }
 
+TEST(Render, TheMeshsOwnColoursAreDrawn) {
+  TriangleMesh mesh = wall();
+  RenderOptions options;
+  options.coloring = MeshColoring::Vertex;
+  EXPECT_FALSE(validate(options, mesh).empty());
+  mesh.colors.assign(mesh.vertices.size(), Rgb8{0, 200, 0});
+  const Rgb8 drawn = render(mesh, frontView(), options)(40, 30);
+  EXPECT_GT(drawn[1], 100);
+  EXPECT_EQ(drawn[0], 0);
+  EXPECT_EQ(drawn[2], 0);
+}
+
+TEST(RenderTurntable, ShowsTheMeshFromAllSidesInRows) {
+  // A box with one red side: some pictures show it, others do not.
+  TriangleMesh mesh = test::box({-1, -1, -1}, {1, 1, 1});
+  for (const Eigen::Vector3f& v : mesh.vertices)
+    mesh.colors.push_back(v.y() < 0 ? Rgb8{255, 0, 0} : Rgb8{0, 0, 255});
+  RenderOptions options;
+  options.coloring = MeshColoring::Vertex;
+  const Image<Rgb8> sheet = renderTurntable(mesh, 5, 40, 30, options);
+  ASSERT_EQ(sheet.width(), 3 * 40);
+  ASSERT_EQ(sheet.height(), 2 * 30);
+  std::vector<int> red(6, 0);
+  for (int y = 0; y < sheet.height(); ++y)
+    for (int x = 0; x < sheet.width(); ++x)
+      red[static_cast<std::size_t>(y / 30 * 3 + x / 40)] += sheet(x, y)[0] > 2 * sheet(x, y)[2] + 20 ? 1 : 0;
+  EXPECT_GT(red[0], 50);
+  EXPECT_LT(std::min(red[2], red[3]), red[0] / 2);
+  EXPECT_EQ(red[5], 0) << "nothing there";
+  EXPECT_EQ(sheet(100, 45), options.background);
+}
+
 TEST(Render, ValuesRunOverTheGivenRange) {
   const TriangleMesh mesh = wall();
   RenderOptions options;

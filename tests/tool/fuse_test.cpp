@@ -236,14 +236,56 @@ TEST_F(FuseTool, ADiskThatFillsUpLeavesNoneOfTheOutputsAndTheOldMesh) {
 }
 
 TEST_F(FuseTool, AnUnknownExtensionIsRefusedBeforeTheWork) {
-  EXPECT_EQ(complaint("scan out.xyz"), "out.xyz: expected the extension .ply, .obj or .stl, found .xyz");
-  EXPECT_EQ(complaint("scan out"), "out: expected the extension .ply, .obj or .stl, found none");
+  EXPECT_EQ(complaint("scan out.xyz"),
+            "out.xyz: expected the extension .ply, .obj, .stl or .glb, found .xyz");
+  EXPECT_EQ(complaint("scan out"), "out: expected the extension .ply, .obj, .stl or .glb, found none");
 }
 
 TEST_F(FuseTool, ADomainWithoutAnySurfaceIsAnErrorNotAnEmptyMesh) {
   EXPECT_THAT(complaint("scan out.ply --voxel 0.05 --bbox 5,5,5,6,6,6"), StartsWith("the result is empty"));
   EXPECT_EQ(complaint("scan out.ply --voxel 0.05 --bbox 5,5,5,4,6,6"),
             "--bbox: the lower corner must come first");
+}
+
+TEST_F(FuseTool, TheHeaderSaysThatTheSurfaceIsClosedTrimmedOrACurlessLevyOne) {
+  const auto comments = [&](const std::string& arguments) {
+    const ToolResult run =
+        runTool(folder, "fuse scan a.ply --resolution 24 --overwrite --quiet " + arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const std::string header = readText(folder / "a.ply").substr(0, 600);
+    EXPECT_EQ(topology(readMesh(folder / "a.ply")).nonmanifold_vertices, 0u);
+    return header.substr(0, header.find("end_header"));
+  };
+  EXPECT_THAT(comments(""), HasSubstr("comment closed surface\n"));
+  EXPECT_THAT(comments("--trim 2"), HasSubstr("comment open: trimmed where fewer than 2 views agree\n"));
+  EXPECT_GT(topology(readMesh(folder / "a.ply")).triangles, 100u);
+  EXPECT_THAT(comments("--method tsdf"), HasSubstr("comment open: no surface where space is unknown"));
+}
+
+TEST_F(FuseTool, TrimmingEverythingIsAnErrorAndSaysWhy) {
+  EXPECT_EQ(complaint("scan out.ply --resolution 24 --trim 1000"),
+            "the result is empty: trim or min_component leaves nothing of the surface");
+}
+
+TEST_F(FuseTool, SimplifiesToANumberOfTrianglesAndStaysClosed) {
+  ASSERT_EQ(runTool(folder, "fuse scan a.ply --resolution 48 --simplify 600 --quiet").exit_code, 0);
+  const TriangleMesh mesh = readMesh(folder / "a.ply");
+  EXPECT_LE(mesh.triangles.size(), 660u);
+  EXPECT_TRUE(isClosedManifold(topology(mesh)));
+  EXPECT_NEAR(signedVolume(mesh), 4.0 / 3 * M_PI * 0.125, 0.05);
+}
+
+TEST_F(FuseTool, ColoursTheMeshFromPicturesUnlessToldNotTo) {
+  std::vector<View> views = test::sphereViews(16, 48);
+  for (View& view : views) view.map.color = Image<Rgb8>(48, 48, Rgb8{200, 100, 50});
+  fs::remove_all(folder / "scan");
+  writeScan(std::move(views));
+  ASSERT_EQ(runTool(folder, "fuse scan a.ply --resolution 24 --quiet").exit_code, 0);
+  const TriangleMesh mesh = readMesh(folder / "a.ply");
+  ASSERT_EQ(mesh.colors.size(), mesh.vertices.size());
+  for (const Rgb8& color : mesh.colors) ASSERT_EQ(color, (Rgb8{200, 100, 50}));
+  ASSERT_EQ(runTool(folder, "fuse scan b.ply --resolution 24 --color none --quiet").exit_code, 0);
+  EXPECT_TRUE(readMesh(folder / "b.ply").colors.empty());
 }
 
 TEST_F(FuseTool, ReadersOfOtherFormatsOfMeshesGetThem) {

@@ -19,7 +19,7 @@ struct ColorReport {
 };
 
 /// Colours the vertices from the views' pictures: of those that show a vertex unoccluded, by their own
-/// depths, the best six by angle and distance, and of these the mean of what agrees with their weighted
+/// depths, the best six by angle and distance, and of these the weighted mean of what agrees with their
 /// median, so that single mistakes and highlights do not count. Pictures are looked up between their pixels;
 /// they may have a size and a sensor of their own. Vertices that no picture shows take the colour of those
 /// around them; grey where there is none at all. Nothing happens when no view has a picture. Loads a few
