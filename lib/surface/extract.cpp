@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "surface/cube_cases.h"
 #include "surface/split_rim.h"
@@ -32,7 +33,54 @@ struct Patch {
   }
 };
 
-bool isInside(float value) { return value < 0; }
+// The signs of a patch: bit z of row (x, y).
+struct SignPatch {
+  using Rows = std::array<std::uint16_t, kPatch * kPatch>;
+  Rows inside, known;
+
+  static std::size_t row(int x, int y) { return static_cast<std::size_t>(x * kPatch + y); }
+  explicit SignPatch(const Patch& patch) {
+    for (std::size_t r = 0; r < inside.size(); ++r) {
+      const float* values = &patch.values[r * kPatch];
+      unsigned in = 0, is = 0;
+      for (unsigned z = 0; z < kPatch; ++z) {
+        in |= static_cast<unsigned>(values[z] < 0) << z;  // not a number: false
+        is |= static_cast<unsigned>(values[z] == values[z]) << z;
+      }
+      inside[r] = static_cast<std::uint16_t>(in), known[r] = static_cast<std::uint16_t>(is);
+    }
+  }
+
+  /// The edges along an axis from the cells of a row, on which the sign changes between known values.
+  unsigned changes(int axis, int x, int y) const {
+    const std::size_t from = row(x, y);
+    if (axis == 2) {
+      const unsigned both = known[from] & (known[from] >> 1);
+      return (inside[from] ^ (inside[from] >> 1)) & both & 0xff;
+    }
+    const std::size_t to = axis == 0 ? row(x + 1, y) : row(x, y + 1);
+    return static_cast<unsigned>(inside[from] ^ inside[to]) & known[from] & known[to] & 0xff;
+  }
+  /// The cubes of a row that are known and that the surface crosses; those that are not known.
+  struct Cubes {
+    unsigned crossed, unknown;
+  };
+  Cubes cubes(int x, int y) const {
+    unsigned all = ~0u, any = 0, is = ~0u;
+    for (const std::size_t r : {row(x, y), row(x + 1, y), row(x, y + 1), row(x + 1, y + 1)})
+      all &= inside[r], any |= inside[r], is &= known[r];
+    const unsigned known_cubes = is & (is >> 1);
+    return {(any | any >> 1) & ~(all & all >> 1) & known_cubes & 0xff, ~known_cubes & 0xff};
+  }
+  std::uint8_t caseOf(int x, int y, int z) const {
+    unsigned corners = 0;
+    for (int c = 0; c < 4; ++c) {
+      const unsigned pair = inside[row(x + (c & 1), y + (c >> 1))] >> z & 3u;
+      corners |= (pair & 1u) << c | (pair >> 1) << (c + 4);
+    }
+    return static_cast<std::uint8_t>(corners);
+  }
+};
 
 // Which of a leaf's 3 × 512 edges carry a vertex, and where the vertices of each word begin.
 struct EdgeSet {
@@ -56,15 +104,20 @@ struct EdgeSet {
   }
 };
 
+constexpr std::uint32_t kExtra = 0x80000000u;
+// The leaf itself and its seven upper neighbours, numbered like the corners of a cube.
+using UpperLeaves = std::array<std::uint32_t, 8>;
+
 // What one leaf contributes. Triangle corners at or above kExtra are the leaf's own centre vertices.
 struct LeafMesh {
+  UpperLeaves leaves;
+  std::optional<SignPatch> signs;
   EdgeSet edges;
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Eigen::Vector3f> centres;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> rim;  ///< vertices on edges of cubes that were left out
 };
-constexpr std::uint32_t kExtra = 0x80000000u;
 
 class Extractor {
  public:
@@ -79,8 +132,6 @@ class Extractor {
   }
 
  private:
-  using UpperLeaves = std::array<std::uint32_t, 8>;
-
   template <class Visit>
   void forEachLeaf(const Progress& progress, const char* name, const Visit& visit) {
     ProgressStep step(progress, name, meshes_.size());
@@ -90,7 +141,6 @@ class Extractor {
     });
   }
 
-  // The leaf itself and its seven upper neighbours, numbered like the corners of a cube.
   UpperLeaves upperLeaves(std::size_t leaf) const {
     UpperLeaves result;
     const Index3 origin = field_.leaf(leaf).origin;
@@ -120,19 +170,23 @@ class Extractor {
   }
 
   void placeVertices(std::size_t index) {
-    const Patch patch = loadPatch(upperLeaves(index));
-    const Index3 origin = field_.leaf(index).origin;
     LeafMesh& mesh = meshes_[index];
+    mesh.leaves = upperLeaves(index);
+    const Patch patch = loadPatch(mesh.leaves);
+    const SignPatch& signs = mesh.signs.emplace(patch);
+    const Index3 origin = field_.leaf(index).origin;
     for (int axis = 0; axis < 3; ++axis) {
       const Index3 step = Index3::Unit(axis);
-      for (int i = 0; i < 512; ++i) {
-        const int x = i >> 6, y = i >> 3 & 7, z = i & 7;
-        const float a = patch.at(x, y, z), b = patch.at(x + step.x(), y + step.y(), z + step.z());
-        if (std::isnan(a) || std::isnan(b) || isInside(a) == isInside(b)) continue;
-        mesh.edges.set(EdgeSet::place(axis, x, y, z));
-        Eigen::Vector3d place = (origin + Index3(x, y, z)).cast<double>();
-        place[axis] += std::clamp(a / (a - b), kMargin, 1 - kMargin);
-        mesh.vertices.push_back(field_.frame().toWorld(place).cast<float>());
+      for (int row = 0; row < 64; ++row) {
+        const int x = row >> 3, y = row & 7;
+        for (unsigned edges = signs.changes(axis, x, y); edges != 0; edges &= edges - 1) {
+          const int z = std::countr_zero(edges);
+          const float a = patch.at(x, y, z), b = patch.at(x + step.x(), y + step.y(), z + step.z());
+          mesh.edges.set(EdgeSet::place(axis, x, y, z));
+          Eigen::Vector3d place = (origin + Index3(x, y, z)).cast<double>();
+          place[axis] += std::clamp(a / (a - b), kMargin, 1 - kMargin);
+          mesh.vertices.push_back(field_.frame().toWorld(place).cast<float>());
+        }
       }
     }
     mesh.edges.count();
@@ -148,34 +202,33 @@ class Extractor {
   }
 
   void connect(std::size_t index) {
-    const UpperLeaves leaves = upperLeaves(index);
-    const Patch patch = loadPatch(leaves);
-    for (int i = 0; i < 512; ++i) {
-      const Index3 cube = leafOffset(i);
-      unsigned inside = 0;
-      bool known = true;
-      for (int c = 0; c < 8 && known; ++c) {
-        const float value = patch.at(cube.x() + (c & 1), cube.y() + (c >> 1 & 1), cube.z() + (c >> 2));
-        known = !std::isnan(value);
-        inside |= static_cast<unsigned>(isInside(value)) << c;
-      }
-      if (!known) appendRim(patch, cube, leaves, meshes_[index].rim);
-      if (!known || inside == 0 || inside == 255) continue;
-      for (const CubePolygon& polygon : cubePolygons(static_cast<std::uint8_t>(inside))) {
-        addPolygon(polygon, cube, leaves, meshes_[index]);
+    LeafMesh& mesh = meshes_[index];
+    const SignPatch& signs = *mesh.signs;
+    for (int row = 0; row < 64; ++row) {
+      const int x = row >> 3, y = row & 7;
+      const SignPatch::Cubes cubes = signs.cubes(x, y);
+      for (unsigned left = cubes.unknown; left != 0; left &= left - 1)
+        appendRim(signs, {x, y, std::countr_zero(left)}, mesh);
+      for (unsigned crossed = cubes.crossed; crossed != 0; crossed &= crossed - 1) {
+        const int z = std::countr_zero(crossed);
+        for (const CubePolygon& polygon : cubePolygons(signs.caseOf(x, y, z)))
+          addPolygon(polygon, {x, y, z}, mesh);
       }
     }
+    mesh.signs.reset();
   }
 
-  void appendRim(const Patch& patch, const Index3& cube, const UpperLeaves& leaves,
-                 std::vector<std::uint32_t>& rim) const {
+  void appendRim(const SignPatch& signs, const Index3& cube, LeafMesh& mesh) const {
+    const auto bit = [](const SignPatch::Rows& rows, const Index3& v) {
+      return (rows[SignPatch::row(v.x(), v.y())] >> v.z() & 1) != 0;
+    };
     for (std::uint8_t edge = 0; edge < cubeEdges().size(); ++edge) {
       const CubeEdge& e = cubeEdges()[edge];
       const Index3 base = cube + Index3(e.base & 1, e.base >> 1 & 1, e.base >> 2);
       const Index3 end = base + Index3(Index3::Unit(e.axis));
-      const float a = patch.at(base.x(), base.y(), base.z()), b = patch.at(end.x(), end.y(), end.z());
-      if (std::isnan(a) || std::isnan(b) || isInside(a) == isInside(b)) continue;
-      rim.push_back(vertexOn(edge, cube, leaves));
+      if (!bit(signs.known, base) || !bit(signs.known, end)) continue;
+      if (bit(signs.inside, base) != bit(signs.inside, end))
+        mesh.rim.push_back(vertexOn(edge, cube, mesh.leaves));
     }
   }
 
@@ -203,10 +256,9 @@ class Extractor {
     return meshes_[leaf].vertices[vertex - first_[leaf]];
   }
 
-  void addPolygon(const CubePolygon& polygon, const Index3& cube, const UpperLeaves& leaves,
-                  LeafMesh& mesh) const {
-    std::array<std::uint32_t, 13> vertices{};
-    for (const std::uint8_t edge : polygon.edges) vertices[edge] = vertexOn(edge, cube, leaves);
+  void addPolygon(const CubePolygon& polygon, const Index3& cube, LeafMesh& mesh) const {
+    std::array<std::uint32_t, 13> vertices;
+    for (const std::uint8_t edge : polygon.edges) vertices[edge] = vertexOn(edge, cube, mesh.leaves);
     if (polygon.has_centre) {
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       for (const std::uint8_t edge : polygon.edges) sum += position(vertices[edge]);
@@ -217,19 +269,30 @@ class Extractor {
       mesh.triangles.push_back({vertices[t[0]], vertices[t[1]], vertices[t[2]]});
   }
 
+  // Vertices on edges come first, leaf by leaf, then those at centres.
   TriangleMesh merge() {
+    std::vector<std::size_t> first_centre(meshes_.size()), first_triangle(meshes_.size());
+    std::size_t vertices = 0, triangles = 0;
+    for (const LeafMesh& mesh : meshes_) vertices += mesh.vertices.size();
+    for (std::size_t i = 0; i < meshes_.size(); ++i) {
+      first_centre[i] = vertices, first_triangle[i] = triangles;
+      vertices += meshes_[i].centres.size(), triangles += meshes_[i].triangles.size();
+    }
     TriangleMesh result;
-    for (const LeafMesh& mesh : meshes_) {
-      result.vertices.insert(result.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    }
-    for (LeafMesh& mesh : meshes_) {
-      const std::uint32_t first_centre = static_cast<std::uint32_t>(result.vertices.size());
-      result.vertices.insert(result.vertices.end(), mesh.centres.begin(), mesh.centres.end());
-      for (Triangle triangle : mesh.triangles) {
-        for (std::uint32_t& v : triangle) v = v < kExtra ? v : first_centre + (v - kExtra);
-        result.triangles.push_back(triangle);
+    result.vertices.resize(vertices), result.triangles.resize(triangles);
+    parallelFor(meshes_.size(), kLeavesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const LeafMesh& mesh = meshes_[i];
+        std::copy(mesh.vertices.begin(), mesh.vertices.end(), result.vertices.data() + first_[i]);
+        std::copy(mesh.centres.begin(), mesh.centres.end(), result.vertices.data() + first_centre[i]);
+        Triangle* to = result.triangles.data() + first_triangle[i];
+        for (Triangle triangle : mesh.triangles) {
+          for (std::uint32_t& v : triangle)
+            v = v < kExtra ? v : static_cast<std::uint32_t>(first_centre[i]) + (v - kExtra);
+          *to++ = triangle;
+        }
       }
-    }
+    });
     splitFans(result, rimVertices());
     dropUnusedVertices(result);
     return result;
