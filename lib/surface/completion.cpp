@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kBand = 2;         // cells around the surface in which it may move
 constexpr int kReach = 4;        // cells around it that are kept
-constexpr int kSteps = 40;       // between two looks at the gap and at the band
+constexpr int kSteps = 25;       // between two looks at the gap and at the band
 constexpr double kDense = 64e3;  // cells of the coarsest level, of which all are kept
 
 int coarsestLevel(const Octree& octree) {
@@ -186,7 +186,8 @@ class Completer {
     own.blocks = relevantBlocks(level);
     Prepared prepared = prepare(level, own);
     VariationProblem& problem = prepared.problem;
-    VariationState state{std::move(own.u), {}, {}};
+    VariationState state;
+    state.u = std::move(own.u);
     VariationGap gap;
     int round = 0;
     for (; round < options_.max_rounds; ++round) {
@@ -232,11 +233,14 @@ void Completion::readSides(const Index3& origin, float* sides) const {
   }
   PyramidBlock cells;
   pyramid_.read(0, own, cells);
-  const LevelReader reader(pyramid_, levels_);
+  std::array<float, 64> parents;  // u of the coarser level
+  const auto is_coarser = [](std::uint8_t level) { return level > 0 && level < PyramidBlock::kMixed; };
+  const bool any = levels_.size() > 1 && std::any_of(cells.level.begin(), cells.level.end(), is_coarser);
+  if (any) LevelReader(pyramid_, levels_).readCube(1, own / 2, 4, parents.data());
   for (std::size_t i = 0; i < kBlockSize; ++i) {
-    const bool is_coarser = cells.level[i] > 0 && cells.level[i] < PyramidBlock::kMixed && levels_.size() > 1;
-    const Index3 parent = (own + leafOffset(static_cast<int>(i))) / 2;
-    sides[i] = side(is_coarser ? reader.at(1, parent) : cells.solid[i]);
+    const Index3 parent = leafOffset(static_cast<int>(i)) / 2;
+    const auto place = static_cast<std::size_t>(parent.x() * 16 + parent.y() * 4 + parent.z());
+    sides[i] = side(any && is_coarser(cells.level[i]) ? parents[place] : cells.solid[i]);
   }
 }
 

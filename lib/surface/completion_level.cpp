@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface/completion_level.h"
 
+#include <map>
+
 namespace vdbfuse {
 namespace {
 
@@ -37,6 +39,19 @@ float LevelReader::at(int level, const Index3& cell) const {
   const bool is_coarser = octree.levels[*found] > level && level + 1 < static_cast<int>(levels_.size());
   if (!is_coarser) return pyramid_.solidAt(*found);
   return at(level + 1, Index3(cell.x() >> 1, cell.y() >> 1, cell.z() >> 1));
+}
+
+void LevelReader::readCube(int level, const Index3& low, int side, float* values) const {
+  const CompletionLevel& own = levels_[static_cast<std::size_t>(level)];
+  std::map<std::array<int, 3>, std::uint32_t> blocks;  // a few
+  for (int k = 0; k < side * side * side; ++k) {
+    const Index3 cell = low + Index3(k / (side * side), k / side % side, k % side);
+    const Index3 origin = leafOrigin(cell);
+    const auto [entry, is_new] = blocks.try_emplace({origin.x(), origin.y(), origin.z()}, kNoBlock);
+    if (is_new) entry->second = own.blocks.find(origin);
+    values[k] =
+        entry->second != kNoBlock ? own.u[entry->second * kBlockSize + leafPlace(cell)] : at(level, cell);
+  }
 }
 
 std::vector<float> movingBand(const BlockSet& blocks, const std::vector<float>& u,

@@ -25,6 +25,8 @@ class LevelReader {
   LevelReader(const CellPyramid& pyramid, const std::vector<CompletionLevel>& levels)
       : pyramid_(pyramid), levels_(levels) {}
   float at(int level, const Index3& cell) const;
+  /// at() of a cube of cells from `low`, x slowest.
+  void readCube(int level, const Index3& low, int side, float* values) const;
 
  private:
   const CellPyramid& pyramid_;

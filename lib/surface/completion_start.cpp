@@ -20,10 +20,7 @@ struct CoarsePatch {
   std::array<float, kSide * kSide * kSide> values;
 
   CoarsePatch(const LevelReader& reader, int level, const Index3& origin) {
-    const Index3 low = origin / 2 - Index3::Ones();
-    for (int k = 0; k < kSide * kSide * kSide; ++k)
-      values[static_cast<std::size_t>(k)] =
-          reader.at(level, low + Index3(k / (kSide * kSide), k / kSide % kSide, k % kSide));
+    reader.readCube(level, origin / 2 - Index3::Ones(), kSide, values.data());
   }
 
   // Trilinear, between the centres of the coarser cells.

@@ -30,8 +30,8 @@ struct CompletionOptions {
   Kind kind = Kind::Isotropic;
   /// The search ends when primal − dual falls below this share of the area, and the surface rests.
   double tolerance = 0.003;
-  /// 40 iterations each, on each level.
-  int max_rounds = 25;
+  /// 25 iterations each, on each level.
+  int max_rounds = 40;
 };
 
 /// The finest level of the completion. The minimum of the energy lies between dual and primal.
