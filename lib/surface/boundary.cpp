@@ -33,19 +33,15 @@ VoxelBox boundaryIn(const BlockField& sides, std::size_t b) {
   return box;
 }
 
-// Blocks within reach of the boundary seen in a block that are not there.
-void appendMissing(const BlockField& sides, std::size_t b, std::vector<Index3>& out) {
+// The block and its neighbours within reach of the boundary seen in it, there or not; none without one.
+std::vector<Index3> reachedFrom(const BlockField& sides, std::size_t b) {
   constexpr int kMargin = 3;  // smoothing looks that far
   const VoxelBox box = boundaryIn(sides, b);
-  if (box.isEmpty()) return;
-  for (int n = 0; n < 27; ++n) {
-    const Index3 step(n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1);
-    bool is_reached = true;
-    for (int a = 0; a < 3; ++a)
-      is_reached &= step[a] == 0 || (step[a] < 0 ? box.low[a] < kMargin : box.high[a] >= 8 - kMargin);
-    if (is_reached && sides.blocks.neighbour(b, step.x(), step.y(), step.z()) == kNoBlock)
-      out.push_back(sides.blocks.origin(b) + 8 * step);
-  }
+  std::vector<Index3> blocks;
+  if (box.isEmpty()) return blocks;
+  appendBlocks(sides.blocks.origin(b) + box.low - Index3::Constant(kMargin),
+               sides.blocks.origin(b) + box.high + Index3::Constant(kMargin), blocks);
+  return blocks;
 }
 
 }  // namespace
@@ -67,22 +63,25 @@ BlockField labelledSides(const LabelledCells& cells, CellLabel beyond) {
 
 BlockField grownSides(const GridFrame& frame, std::vector<Index3> origins,
                       const std::function<void(const Index3& origin, float* sides)>& read) {
+  BlockField sides{frame, BlockSet(std::move(origins)), {}};
   while (true) {
-    BlockField sides{frame, BlockSet(origins), {}};
     sides.values.resize(sides.blocks.valueCount());
     forEachBlock(sides.blocks.count(), [&](std::size_t b) { read(sides.blocks.origin(b), sides.block(b)); });
     std::vector<std::vector<Index3>> parts(sides.blocks.count());
-    forEachBlock(parts.size(), [&](std::size_t b) { appendMissing(sides, b, parts[b]); });
-    const std::vector<Index3> missing = joined(parts);
-    if (missing.empty()) return sides;
-    origins.insert(origins.end(), missing.begin(), missing.end());
+    forEachBlock(parts.size(), [&](std::size_t b) { parts[b] = reachedFrom(sides, b); });
+    BlockSet reached(joined(parts));
+    const bool is_complete =
+        std::all_of(reached.origins().begin(), reached.origins().end(),
+                    [&](const Index3& origin) { return sides.blocks.find(origin) != kNoBlock; });
+    const bool is_same = is_complete && reached.count() == sides.blocks.count();
+    if (is_same) return sides;
+    sides.blocks = std::move(reached);
   }
 }
 
 std::vector<float> nearBoundary(const BlockField& sides) {
   // Both sides are there when a mean over them is neither +1 nor −1.
-  const std::vector<float> everywhere(sides.values.size(), 1.0f);
-  std::vector<float> near = smoothed(sides.blocks, sides.values, everywhere, 2.0);
+  std::vector<float> near = smoothed(sides.blocks, sides.values, 1.0);
   for (float& mean : near) mean = std::abs(mean) < 0.9999f ? 1.0f : 0.0f;
   return near;
 }

@@ -13,8 +13,8 @@ namespace vdbfuse {
 /// The labels, on all blocks within a few voxels of the boundary between them.
 BlockField labelledSides(const LabelledCells& cells, CellLabel beyond);
 
-/// Sides on the blocks at `origins` and on all others that the boundary reaches from them. `read` gives the
-/// sides of the block at an origin.
+/// Sides on the blocks around the boundary, as far as it can be followed from the blocks at `origins`. `read`
+/// gives the sides of the block at an origin.
 BlockField grownSides(const GridFrame& frame, std::vector<Index3> origins,
                       const std::function<void(const Index3& origin, float* sides)>& read);
 

@@ -95,9 +95,8 @@ std::vector<float> inventedVoxels(const FieldParts& parts) {
 }
 
 // A completed surface is smooth, but for the last fraction of a voxel.
-void smoothInvented(const BlockSet& blocks, const std::vector<float>& invented,
-                    const std::vector<float>& everywhere, std::vector<float>& field) {
-  const std::vector<float> smooth = smoothed(blocks, field, everywhere, 1.0);
+void smoothInvented(const BlockSet& blocks, const std::vector<float>& invented, std::vector<float>& field) {
+  const std::vector<float> smooth = smoothed(blocks, field, 1.0);
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (invented[i] > 0) field[i] = smooth[i];
   }
@@ -126,7 +125,7 @@ void refine(const JudgedViews& judged, const FieldParts& parts, double smoothing
   BlockField current{parts.sides.frame, parts.sides.blocks, std::move(field)};
   const MeasuredField residual = measureResiduals(judged, close, current, progress);
   const std::vector<float> change =
-      smoothed(parts.sides.blocks, residual.distance, residual.weight, smoothing);
+      smoothed(parts.sides.blocks, residual.distance, smoothing, residual.weight);
   field = std::move(current.values);
   for (std::size_t i = 0; i < field.size(); ++i) {
     if (close[i] > 0 && !std::isnan(change[i])) field[i] += change[i];
@@ -154,16 +153,16 @@ SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, 
   const std::vector<float> invented = inventedVoxels(parts);
   if (report) dropFragments(invented, kFragment, parts.sides);
   std::vector<float> field = firstField(parts);
-  if (options.smoothing_voxels > 0) {
-    const std::vector<float> everywhere(field.size(), 1.0f);
-    smoothInvented(parts.sides.blocks, invented, everywhere, field);
-    const double smoothing = smoothingFor(parts.measured.weight, parts.voxel(), options.smoothing_voxels);
-    field = smoothed(parts.sides.blocks, field, everywhere, std::max(kRounding, smoothing));
-    refine(judged, parts, smoothing, progress, field);
-  }
   std::vector<float> may_change = invented;
   for (std::size_t i = 0; i < may_change.size(); ++i) {
     if (!std::isnan(parts.measured.distance[i])) may_change[i] = 1;
+  }
+  const double smoothing = smoothingFor(parts.measured.weight, parts.voxel(), options.smoothing_voxels);
+  parts.measured = {}, parts.completed = {};  // they are in the field
+  if (smoothing > 0) {
+    smoothInvented(parts.sides.blocks, invented, field);
+    field = smoothed(parts.sides.blocks, field, std::max(kRounding, smoothing));
+    refine(judged, parts, smoothing, progress, field);
   }
   settleSides(field, may_change, parts.sides);
   putBack(parts.sides, kPutBack * parts.voxel(), field);

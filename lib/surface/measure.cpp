@@ -252,12 +252,12 @@ MeasuredField measureDistances(const JudgedViews& judged, const BlockField& side
 
 MeasuredField measureResiduals(const JudgedViews& judged, const std::vector<float>& wanted, BlockField& field,
                                const Progress& progress) {
-  const BlockField before = field;
+  const std::vector<float> before = field.values;
   const auto make = [&](std::size_t b) {
     std::vector<Probe> probes;
     FootPoint foot;
     foot.slope_scale = field.frame.voxel;
-    loadPadded(before.blocks, before.values.data(), b, kUnknown, foot.field);
+    loadPadded(field.blocks, before.data(), b, kUnknown, foot.field);
     for (std::uint32_t i = 0; i < kBlockSize; ++i) {
       if (!(wanted[b * kBlockSize + i] > 0)) continue;
       const Index3 v = leafOffset(static_cast<int>(i));

@@ -39,21 +39,31 @@ void alongAxis(int axis, const Weights& weights, Patch& patch) {
   }
 }
 
+// Values times weights, and the weights; without weights everything known counts alike.
+void loadWeighted(const BlockSet& blocks, const std::vector<float>& values, const std::vector<float>& weights,
+                  std::size_t b, Patch& sum, Patch& total) {
+  loadPadded(blocks, values.data(), b, kUnknown, sum);
+  if (!weights.empty()) loadPadded(blocks, weights.data(), b, 0.0f, total);
+  for (std::size_t i = 0; i < sum.values.size(); ++i) {
+    const bool is_known = sum.values[i] == sum.values[i];
+    const float weight = weights.empty() ? 1.0f : total.values[i];
+    total.values[i] = is_known ? weight : 0.0f;
+    sum.values[i] = is_known ? weight * sum.values[i] : 0.0f;
+  }
+}
+
 std::vector<float> smoothedOnce(const BlockSet& blocks, const std::vector<float>& values,
                                 const std::vector<float>& weights, double sigma) {
   const Weights kernel = gaussian(sigma);
-  std::vector<float> products(values.size()), result(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) products[i] = weights[i] > 0 ? weights[i] * values[i] : 0;
+  std::vector<float> result(values.size());
   forEachBlock(blocks.count(), [&](std::size_t b) {
     Patch sum, total;
-    loadPadded(blocks, products.data(), b, 0.0f, sum);
-    loadPadded(blocks, weights.data(), b, 0.0f, total);
+    loadWeighted(blocks, values, weights, b, sum, total);
     for (int axis = 0; axis < 3; ++axis) alongAxis(axis, kernel, sum), alongAxis(axis, kernel, total);
-    for (int i = 0; i < static_cast<int>(kBlockSize); ++i) {
-      const Index3 v = leafOffset(i);
-      const float weight = total.at(v.x(), v.y(), v.z());
-      result[b * kBlockSize + static_cast<std::size_t>(i)] =
-          weight > 0 ? sum.at(v.x(), v.y(), v.z()) / weight : kUnknown;
+    for (std::size_t i = 0; i < kBlockSize; ++i) {
+      const Index3 v = leafOffset(static_cast<int>(i));
+      const float weight = total.at(v);
+      result[b * kBlockSize + i] = weight > 0 ? sum.at(v) / weight : kUnknown;
     }
   });
   return result;
@@ -61,17 +71,13 @@ std::vector<float> smoothedOnce(const BlockSet& blocks, const std::vector<float>
 
 }  // namespace
 
-std::vector<float> smoothed(const BlockSet& blocks, const std::vector<float>& values,
-                            const std::vector<float>& weights, double sigma) {
+std::vector<float> smoothed(const BlockSet& blocks, const std::vector<float>& values, double sigma,
+                            const std::vector<float>& weights) {
   constexpr double kWidest = 1.1;  // of one pass: more would feel the cut-off
   const int passes = std::max(1, static_cast<int>(std::ceil(sigma * sigma / (kWidest * kWidest) - 1e-9)));
   const double step = sigma / std::sqrt(passes);
   std::vector<float> result = smoothedOnce(blocks, values, weights, step);
-  std::vector<float> known(values.size());
-  for (int pass = 1; pass < passes; ++pass) {
-    for (std::size_t i = 0; i < known.size(); ++i) known[i] = std::isnan(result[i]) ? 0.0f : 1.0f;
-    result = smoothedOnce(blocks, result, known, step);
-  }
+  for (int pass = 1; pass < passes; ++pass) result = smoothedOnce(blocks, result, {}, step);
   return result;
 }
 
