@@ -22,7 +22,7 @@ constexpr double kJudgedBytesPerPixel = 16.0;  // while views are judged: the li
 constexpr double kJudging = 250 * kMiB;        // beside the views: the grid of denial, points of the domain
 constexpr double kKeptBytesPerPixel = 13.0;    // depth, ε, incidence, look
 constexpr double kPass = 260 * kMiB;           // sums of the evidence
-constexpr double kBytesPerCell = 128.0;        // when the cut is solved
+constexpr double kBytesPerCell = 160.0;        // when the surface is made
 constexpr double kBytesPerCellOfEvidence = 45.0;
 constexpr double kBytesPerVoxelOfTsdf = 10.0;
 // Coarser cells beside the finest ones.

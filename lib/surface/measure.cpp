@@ -53,25 +53,28 @@ struct PreparedView {
   bool rays_meet_;
 };
 
+int nearestPixel(double x) { return static_cast<int>(x + 0.5); }
+
 // The mean signed distance of a voxel.
 class DistanceMeter {
  public:
   DistanceMeter(const SensorModel& sensor, double voxel) : sensor_(sensor), voxel_(voxel) {}
 
-  void add(const PreparedView& prepared, Probe& probe) const {
+  static bool mightCount(const PreparedView&, const Probe&) { return true; }
+
+  void add(const PreparedView& prepared, const PixelDepth& seen, Probe& probe) const {
     const JudgedView& view = *prepared.view;
-    const std::optional<Sighting> seen = prepared.projector(probe.point);
-    if (!seen) return;
-    const float measured = view.depth(seen->x, seen->y);
+    const int x = nearestPixel(seen.x), y = nearestPixel(seen.y);
+    const float measured = view.depth(x, y);
     if (measured == kInvalidDepth) return;
-    const double distance = measured - seen->depth;
+    const double distance = measured - seen.depth;
     if (std::abs(distance) > 3 * voxel_ + 3 * sensor_.noise.at(measured)) return;
     const double own = sensor_.noise.at(measured),
                  slack = kLookupPixels * footprint(view.projection, measured);
     const double variance = own * own + slack * slack;
     if (-probe.side * distance > kSameSide * std::max(voxel_, std::sqrt(variance))) return;
-    const double cosine = std::max<double>(view.incidence(seen->x, seen->y), kLeastCosine);
-    const double weight = view.weight * (1 - view.outlier(seen->x, seen->y)) * cosine * cosine / variance;
+    const double cosine = std::max<double>(view.incidence(x, y), kLeastCosine);
+    const double weight = view.weight * (1 - view.outlier(x, y)) * cosine * cosine / variance;
     probe.distance += weight * distance * cosine;
     probe.weight += weight;
   }
@@ -86,22 +89,23 @@ class ResidualMeter {
  public:
   ResidualMeter(const SensorModel& sensor, double voxel) : sensor_(sensor), voxel_(voxel) {}
 
-  void add(const PreparedView& prepared, Probe& probe) const {
+  static bool mightCount(const PreparedView& view, const Probe& probe) {
+    return view.mightFace(probe.point, probe.normal);
+  }
+
+  void add(const PreparedView& prepared, const PixelDepth& seen, Probe& probe) const {
     const JudgedView& view = *prepared.view;
-    if (!prepared.mightFace(probe.point, probe.normal)) return;
-    const std::optional<PixelDepth> seen = prepared.projector.place(probe.point);
-    if (!seen) return;
-    const int x = static_cast<int>(seen->x + 0.5), y = static_cast<int>(seen->y + 0.5);
+    const int x = nearestPixel(seen.x), y = nearestPixel(seen.y);
     const float nearest = view.depth(x, y);
     if (nearest == kInvalidDepth) return;
     const double noise = sensor_.noise.at(nearest);
     const double reach = std::max(1.5 * voxel_, kNear * noise);
-    if (std::abs(nearest - seen->depth) > reach / kLeastCosine) return;
-    const Eigen::Vector3d along = prepared.along(probe.point, *seen);
+    if (std::abs(nearest - seen.depth) > reach / kLeastCosine) return;
+    const Eigen::Vector3d along = prepared.along(probe.point, seen);
     const double slope = -probe.normal.dot(along);
     const double cosine = slope / along.norm();
     if (cosine < kLeastCosine) return;  // seen from behind, or hardly
-    const double residual = (interpolated(view, *seen, nearest, noise) - seen->depth) * slope;
+    const double residual = (interpolated(view, seen, nearest, noise) - seen.depth) * slope;
     if (std::abs(residual) > reach) return;
     const double slack = kSlackPixels * footprint(view.projection, nearest);
     const double weight =
@@ -182,6 +186,28 @@ struct FootPoint {
   }
 };
 
+struct SeenProbe {
+  std::size_t probe;
+  PixelDepth place;
+};
+
+// Finds the pixels first, so that they are on their way when they are looked at.
+template <class Meter>
+void addView(const Meter& meter, const PreparedView& view, std::vector<Probe>& probes,
+             std::vector<SeenProbe>& seen) {
+  seen.clear();
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    if (!meter.mightCount(view, probes[i])) continue;
+    const std::optional<PixelDepth> place = view.projector.place(probes[i].point);
+    if (!place) continue;
+    const int x = nearestPixel(place->x), y = nearestPixel(place->y);
+    __builtin_prefetch(&view.view->depth(x, y));
+    __builtin_prefetch(&view.view->outlier(x, y));
+    seen.push_back({i, *place});
+  }
+  for (const SeenProbe& s : seen) meter.add(view, s.place, probes[s.probe]);
+}
+
 // Asks all views about the probes of blocks [begin, end). Windows of views pass by on the outside.
 template <class Meter>
 void askViews(const JudgedViews& judged, const BlockField& field, const Meter& meter, std::size_t begin,
@@ -193,13 +219,14 @@ void askViews(const JudgedViews& judged, const BlockField& field, const Meter& m
       views.emplace_back(judged.views[i]);
     }
     parallelFor(probes.size(), kBlocksPerTask, [&](std::size_t low, std::size_t high) {
+      std::vector<SeenProbe> seen;
       for (std::size_t b = low; b < high; ++b) {
         if (probes[b].empty()) continue;
         const Eigen::Vector3d centre = field.frame.toWorld(
             Eigen::Vector3d(field.blocks.origin(begin + b).template cast<double>().array() + 3.5));
         for (const PreparedView& view : views) {
           if (!view.projector.mightSee(centre, kBlockRadius * field.frame.voxel)) continue;
-          for (Probe& probe : probes[b]) meter.add(view, probe);
+          addView(meter, view, probes[b], seen);
         }
       }
     });
