@@ -111,6 +111,9 @@ TEST_F(FuseTool, FusesAScanIntoAClosedMeshAndSaysWhatItDid) {
   EXPECT_EQ(json.at("input").at("format"), "mvsnet");
   EXPECT_EQ(json.at("mesh").at("vertices"), mesh.vertices.size());
   EXPECT_EQ(json.at("mesh").at("open_edges"), 0);
+  EXPECT_EQ(json.at("mesh").at("zero_area_triangles"), 0);
+  EXPECT_GE(json.at("mesh").at("aspect_median"), 1);
+  EXPECT_LT(json.at("mesh").at("aspect_99"), 100);  // marching cubes cuts corners
   EXPECT_EQ(json.at("cut").at("certified"), true);
   EXPECT_EQ(folder.entryCount(), 4u);
 }

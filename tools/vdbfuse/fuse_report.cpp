@@ -5,6 +5,7 @@
 
 #include "json_file.h"
 #include "vdbfuse/base/memory.h"
+#include "vdbfuse/mesh/aspect.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -74,6 +75,7 @@ Json calibrationJson(const CalibrationReport& c) {
 }
 
 Json meshJson(const Reconstruction& result, const TopologyReport& t) {
+  const AspectReport aspect = aspects(result.mesh);
   return {{"vertices", result.mesh.vertices.size()},
           {"triangles", result.mesh.triangles.size()},
           {"components", t.components},
@@ -81,6 +83,9 @@ Json meshJson(const Reconstruction& result, const TopologyReport& t) {
           {"nonmanifold_edges", t.nonmanifold_edges},
           {"nonmanifold_vertices", t.nonmanifold_vertices},
           {"euler_number", t.euler_number},
+          {"zero_area_triangles", t.zero_area_triangles},
+          {"aspect_median", aspect.median},
+          {"aspect_99", aspect.quantile99},
           {"invented_area_share", result.invented_area_share},
           {"components_dropped", result.components_dropped},
           {"simplify_error", result.simplify_error},
