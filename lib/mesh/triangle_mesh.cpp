@@ -20,9 +20,6 @@ void keep(const std::vector<std::uint32_t>& number, std::size_t count, std::vect
   values.resize(count);
 }
 
-}  // namespace
-namespace {
-
 struct Corners {
   Eigen::Vector3d a, b, c;
 };

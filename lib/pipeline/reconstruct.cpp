@@ -18,8 +18,8 @@
 namespace vdbfuse {
 namespace {
 
-// What a reader of the mesh should know of it; what was asked for is cut away.
-void describeMesh(const ReconstructOptions& options, Reconstruction& result) {
+// Cuts away what was asked for, and says what a reader of the mesh should know of it.
+void finishMesh(const ReconstructOptions& options, Reconstruction& result) {
   TriangleMesh& mesh = result.mesh;
   char text[64];
   std::snprintf(text, sizeof text, "%.1f %% of the area invented", 100 * result.invented_area_share);
@@ -66,7 +66,7 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
                   support, {options.smoothing_voxels, kSupported, options.completion}, progress);
   result.mesh = extractSurface(surface.distance, progress);
   describeVertices(support, options.mu, result);
-  describeMesh(options, result);
+  finishMesh(options, result);
 
   result.grid = describeGrid(cells.octree, support, domain);
   result.cut = CutReportSummary{cut.flow,
@@ -98,7 +98,7 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
   timer.start("surface");
   result.mesh = extractSurface(volume.distance, progress);
   describeVertices(volume.weight, options.mu, result);
-  describeMesh(options, result);
+  finishMesh(options, result);
   result.grid = describeGrid(volume.distance, domain);
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids.push_back(std::move(volume.distance));

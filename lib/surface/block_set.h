@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vdbfuse/base/parallel.h"
@@ -31,6 +32,13 @@ class BlockSet {
   /// The block at origin + 8·step, steps in −1 … 1; kNoBlock where there is none.
   std::uint32_t neighbour(std::size_t block, int x, int y, int z) const {
     return neighbours_[block][static_cast<std::size_t>((x + 1) * 9 + (y + 1) * 3 + z + 1)];
+  }
+  /// The value beside a value of arrays that hold 512 a block, steps in −1 … 1; nothing outside the blocks.
+  std::optional<std::size_t> neighbourOf(std::size_t value, const Index3& step) const {
+    const Index3 v = leafOffset(static_cast<int>(value % kBlockSize)) + step;
+    const std::uint32_t b = neighbour(value / kBlockSize, v.x() >> 3, v.y() >> 3, v.z() >> 3);
+    if (b == kNoBlock) return std::nullopt;
+    return b * kBlockSize + leafPlace(v);
   }
 
  private:

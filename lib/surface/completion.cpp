@@ -77,8 +77,6 @@ class Completer {
   }
 
  private:
-  bool isCoarsest(int level) const { return level + 1 == static_cast<int>(levels_.size()); }
-
   // The coarsest level with one layer of cells beyond the domain.
   std::vector<Index3> allBlocks(int level) const {
     std::vector<Index3> blocks;
@@ -116,7 +114,7 @@ class Completer {
 
   // Blocks within reach of the surface where it may move.
   BlockSet relevantBlocks(int level) const {
-    if (isCoarsest(level)) return BlockSet(allBlocks(level));
+    if (start_.isCoarsest(level)) return BlockSet(allBlocks(level));
     const BlockSet near(candidates(level));
     std::vector<float> u(near.valueCount()), may_move(near.valueCount());
     forEachBlock(near.count(), [&](std::size_t b) {
@@ -163,7 +161,7 @@ class Completer {
   // Begins with what the coarser level's dual variables say.
   void startDual(int level, const VariationProblem& problem, VariationState& state) const {
     makeRoom(problem, state);
-    if (isCoarsest(level)) return;
+    if (start_.isCoarsest(level)) return;
     const BlockSet& coarse = levels_[static_cast<std::size_t>(level) + 1].blocks;
     forEachBlock(problem.blocks->count(), [&](std::size_t b) {
       if (state.dual_of[b] == kNoBlock) return;
@@ -191,8 +189,9 @@ class Completer {
     VariationGap gap;
     int round = 0;
     for (; round < options_.max_rounds; ++round) {
-      std::vector<float> free =
-          isCoarsest(level) ? prepared.may_move : movingBand(own.blocks, state.u, prepared.may_move, kBand);
+      std::vector<float> free = start_.isCoarsest(level)
+                                    ? prepared.may_move
+                                    : movingBand(own.blocks, state.u, prepared.may_move, kBand);
       if (rests(free, problem.free, gap, options_.tolerance)) break;
       problem.free = std::move(free);
       if (round == 0) startDual(level, problem, state);

@@ -33,14 +33,13 @@ class CompletionStart {
                   const CompletionData& data)
       : pyramid_(pyramid), levels_(levels), data_(data) {}
 
-  const CompletionData& data() const { return data_; }
   void read(int level, const Index3& origin, StartBlock& out) const;
+  bool isCoarsest(int level) const { return level + 1 == static_cast<int>(levels_.size()); }
   bool mayMove(int level, std::size_t cell) const {
     return pyramid_.octree().levels[cell] >= level && pyramid_.supportOf(cell) < data_.supported;
   }
 
  private:
-  bool isCoarsest(int level) const { return level + 1 == static_cast<int>(levels_.size()); }
   void readCoarser(int level, const Index3& origin, const PyramidBlock& cells, StartBlock& out) const;
   void readMeasurements(const Index3& origin, const PyramidBlock& cells, StartBlock& out) const;
 

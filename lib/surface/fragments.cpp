@@ -1,18 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surface/fragments.h"
 
-#include <optional>
-
 namespace vdbfuse {
 namespace {
-
-// The voxel at a step from another one; nothing outside the blocks.
-std::optional<std::size_t> neighbourOf(const BlockSet& blocks, std::size_t voxel, const Index3& step) {
-  const Index3 v = leafOffset(static_cast<int>(voxel % kBlockSize)) + step;
-  const std::uint32_t b = blocks.neighbour(voxel / kBlockSize, v.x() >> 3, v.y() >> 3, v.z() >> 3);
-  if (b == kNoBlock) return std::nullopt;
-  return b * kBlockSize + leafPlace(v);
-}
 
 // Calls visit(step) for the neighbours across faces, and across edges, too, for insides.
 template <class Visit>
@@ -32,7 +22,7 @@ std::optional<std::vector<std::size_t>> smallComponent(const BlockField& sides, 
   bool is_small = true;
   for (std::size_t next = 0; next < found.size() && is_small; ++next) {
     forEachStep(side < 0, [&](const Index3& step) {
-      const std::optional<std::size_t> voxel = neighbourOf(sides.blocks, found[next], step);
+      const std::optional<std::size_t> voxel = sides.blocks.neighbourOf(found[next], step);
       is_small &= voxel.has_value();
       if (!voxel || sides.values[*voxel] != side) return;
       if (std::find(found.begin(), found.end(), *voxel) != found.end()) return;
@@ -49,7 +39,7 @@ bool touches(const BlockField& sides, const std::vector<float>& marks, std::size
   if (marks[voxel] > 0) return true;
   bool any = false;
   forEachStep(false, [&](const Index3& step) {
-    const std::optional<std::size_t> next = neighbourOf(sides.blocks, voxel, step);
+    const std::optional<std::size_t> next = sides.blocks.neighbourOf(voxel, step);
     any |= next && marks[*next] > 0;
   });
   return any;

@@ -30,16 +30,13 @@ std::vector<std::size_t> contradictions(const std::vector<float>& field, const s
 
 // False next to blocks that are not there.
 bool canChange(const BlockField& sides, std::size_t voxel) {
-  const std::size_t block = voxel / kBlockSize;
-  const Index3 v = leafOffset(static_cast<int>(voxel % kBlockSize));
   Neighbourhood inside = 0;
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dz = -1; dz <= 1; ++dz) {
-        const Index3 w = v + Index3(dx, dy, dz);
-        const std::uint32_t b = sides.blocks.neighbour(block, w.x() >> 3, w.y() >> 3, w.z() >> 3);
-        if (b == kNoBlock) return false;
-        if (sides.values[b * kBlockSize + leafPlace(w)] < 0) inside |= neighbourBit(dx, dy, dz);
+        const std::optional<std::size_t> next = sides.blocks.neighbourOf(voxel, {dx, dy, dz});
+        if (!next) return false;
+        if (sides.values[*next] < 0) inside |= neighbourBit(dx, dy, dz);
       }
     }
   }

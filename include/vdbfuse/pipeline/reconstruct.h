@@ -55,10 +55,9 @@ struct ReconstructOptions {
   double smoothing_voxels = 2.0;  ///< FieldOptions::smoothing_voxels
   CompletionOptions completion;   ///< of what nobody measured
   double trim = 0.0;              ///< cut away what fewer views than this agree on; 0: keep all
-  double min_component =
-      0.0;  ///< drop components with a bounding box of a smaller diagonal, length; 0: keep all
-  std::size_t simplify = 0;  ///< triangles to be left, about; 0: all
-  double truncation = 0.0;   ///< of the TSDF, length; default max(4 voxels, 3 × noise)
+  double min_component = 0.0;     ///< least diagonal of a component's bounding box, length; 0: keep all
+  std::size_t simplify = 0;       ///< triangles to be left, about; 0: all
+  double truncation = 0.0;        ///< of the TSDF, length; default max(4 voxels, 3 × noise)
 
   /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
   /// /var/tmp) and pass by; where the cells do not fit, the reconstruction is refused before it begins.
@@ -122,7 +121,7 @@ struct Reconstruction {
   CalibrationReport calibration;
   GridReport grid;
   std::optional<CutReportSummary> cut;  ///< nothing for the TSDF
-  double invented_area_share = 0;       ///< share of the area that no view supports
+  double invented_area_share = 0;       ///< share of the area that no view supports, before trimming
   std::size_t components_dropped = 0;   ///< below ReconstructOptions::min_component
   double simplify_error = 0;            ///< SimplifyReport::error
   std::vector<ScalarGrid> grids;

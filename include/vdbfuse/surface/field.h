@@ -56,9 +56,12 @@ struct SurfaceField {
 };
 
 /// Grid "surface" on the finest voxels around the boundary between the labels; kUnknown further away. Signed
-/// distance, > 0 outside, cut off at two voxels. Where `support` (C of the finest voxels) holds, its sign is
-/// the label of the voxel, and the distance is the mean of (D − d)·cos over the views that see this side of
-/// the surface, weighted by reliability, incidence and precision; elsewhere that of the completed surface.
+/// distance, > 0 outside, cut off at about two voxels. Where `support` (C of the finest voxels) holds, or
+/// beside a voxel where it does: the mean of (D − d)·cos over the views that see this side of the surface,
+/// weighted by reliability, incidence and precision; measured once more at the surface that this gives, and
+/// smoothed as far as the noise asks for. Elsewhere the distance of the completed surface. Signs begin as the
+/// labels; where something was measured or completed they follow the distance as long as that changes
+/// neither components nor handles.
 SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, const ScalarGrid& support,
                          const FieldOptions& options = {}, const Progress& progress = {});
 
