@@ -63,7 +63,8 @@ double expectedTsdfVoxels(const Survey& survey, double voxel, double pixels, dou
 // Finest cells: the ridge of the support, two voxels around, and what rounding to pairs of voxels costs.
 double expectedCells(const Survey& survey, double voxel, double pixels, const ReconstructOptions& options) {
   if (options.method == Method::Tsdf)
-    return expectedTsdfVoxels(survey, voxel, pixels, options.truncation > 0 ? options.truncation : 4 * voxel);
+    return expectedTsdfVoxels(survey, voxel, pixels,
+                              options.tsdf.truncation > 0 ? options.tsdf.truncation : 4 * voxel);
   constexpr double kRidge = 0.83, kSupported = 1.6, kAround = 5.5;
   const double half_width = voxel < survey.noise_scale ? kRidge * survey.noise_scale : kSupported * voxel;
   const double layers = 2 * half_width / voxel + kAround;

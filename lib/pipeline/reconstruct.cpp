@@ -11,7 +11,9 @@
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/pipeline/judge_scan.h"
+#include "vdbfuse/sensor/view_windows.h"
 #include "vdbfuse/surface/extract.h"
+#include "vdbfuse/surface/rim.h"
 #include "vdbfuse/surface/simplify.h"
 #include "vdbfuse/surface/trim.h"
 
@@ -87,22 +89,55 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   result.grids.push_back(std::move(surface.distance));
 }
 
+double chooseTruncation(const TsdfMethod& method, double voxel, const CalibrationReport& calibration) {
+  if (method.truncation > 0) return method.truncation;
+  if (method.otherwise == TsdfMethod::Truncation::FromOutliers)
+    return truncationFor(calibration.noise_scale,
+                         std::clamp<double>(calibration.outlier_share, kMinOutlier, kMaxOutlier));
+  return std::max(4 * voxel, 3 * calibration.noise_scale);
+}
+
+// Views that are believed as far as they were judged.
+TsdfVolume integrateViews(const JudgedViews& judged, const GridFrame& frame, const TsdfOptions& options,
+                          const WeightOptions& weighting, const Progress& progress) {
+  TsdfVolume volume(frame, options);
+  const auto with_each = [&](const char* name, const auto& use) {
+    ProgressStep step(progress, name, judged.views.size());
+    for (const JudgedView& view : judged.views) {
+      const Image<float> weights = measurementWeights(view, judged.sensor.noise, frame.voxel, weighting);
+      use(TsdfInput{view, view.depth, &weights});
+      letGo(view);
+      step.advance();
+    }
+  };
+  // So that each view carves what any view makes.
+  if (options.carving == Carving::On)
+    with_each("allocate", [&](const TsdfInput& input) { volume.allocate(input); });
+  with_each("integrate", [&](const TsdfInput& input) { volume.integrate(input); });
+  return volume;
+}
+
 void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
               const ReconstructOptions& options, const Progress& progress, StepTimer& timer,
               Reconstruction& result) {
   timer.start("integrate");
-  const double truncation = options.truncation > 0
-                                ? options.truncation
-                                : std::max(4 * frame.voxel, 3 * result.calibration.noise_scale);
-  TsdfVolume volume = integrateTsdf(judged, frame, domain, {truncation}, progress);
+  const TsdfMethod& method = options.tsdf;
+  TsdfOptions tsdf;
+  tsdf.truncation = result.truncation = chooseTruncation(method, frame.voxel, result.calibration);
+  tsdf.domain = domain;
+  tsdf.carving = method.carving;
+  const TsdfVolume volume = integrateViews(judged, frame, tsdf, method.weights, progress);
+
   timer.start("surface");
-  result.mesh = extractSurface(volume.distance, progress);
-  describeVertices(volume.weight, options.mu, result);
+  ScalarGrid distance = volume.distance(static_cast<float>(method.least_weight));
+  result.grid = describeGrid(distance, domain);
+  for (int pass = 0; pass < method.close_gaps; ++pass) distance = closeGaps(distance);
+  result.mesh = extractSurface(distance, progress);
+  if (method.trim_rim > 0) trimRim(method.trim_rim, result.mesh);
+  result.mesh.normals = vertexNormals(result.mesh);
+  volume.describeVertices(result.mesh);
   finishMesh(options, result);
-  result.grid = describeGrid(volume.distance, domain);
-  if (options.grids == ReconstructOptions::Grids::Drop) return;
-  result.grids.push_back(std::move(volume.distance));
-  result.grids.push_back(std::move(volume.weight));
+  if (options.grids == ReconstructOptions::Grids::Keep) result.grids = volume.grids();
 }
 
 }  // namespace

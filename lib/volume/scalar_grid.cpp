@@ -59,6 +59,7 @@ float ScalarGrid::background() const { return impl_->grid->background(); }
 std::size_t ScalarGrid::leafCount() const { return impl_->leaves.size(); }
 std::size_t ScalarGrid::memoryBytes() const { return impl_->grid->memUsage(); }
 std::map<std::string, std::string>& ScalarGrid::metadata() { return impl_->metadata; }
+const std::map<std::string, std::string>& ScalarGrid::metadata() const { return impl_->metadata; }
 void ScalarGrid::setKind(GridKind kind) { impl_->kind = kind; }
 
 ScalarGrid::Leaf ScalarGrid::leaf(std::size_t index) const {

@@ -181,7 +181,7 @@ TEST(ReconstructOptions, EverythingThatIsWrongIsReported) {
   EXPECT_TRUE(validate(options).empty());
   options.voxel = -1, options.resolution = -1, options.domain = Box(), options.max_level = 7;
   options.noise_scale = NAN, options.outliers = 1.0, options.mu = -1, options.smoothing_voxels = 3;
-  options.truncation = -1, options.evidence.visibility_prior = 0;
+  options.tsdf.truncation = -1, options.evidence.visibility_prior = 0;
   EXPECT_EQ(validate(options).size(), 11u);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // vdbfuse fuse INPUT OUT: depth maps to a surface.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -37,7 +38,9 @@ struct Request {
   fs::path input, output, judgement, grids, json;
   SensorArguments sensor;
   ReconstructOptions reconstruct;
-  std::string border = "auto", thickness = "auto", color = "auto";
+  std::string border = "auto", thickness = "auto", color = "auto", truncation = "auto";
+  std::vector<std::string> weights;
+  bool carve = false;
   int threads = 0;
   bool overwrite = false, quiet = false;
 };
@@ -91,8 +94,31 @@ void addEnergyOptions(CLI::App& app, Request& r) {
       ->capture_default_str();
   choice(app, "--completion", o.completion.kind, kCompletions,
          "Where nothing was measured: a minimal surface, or the faces of the cut");
-  app.add_option("--truncation", o.truncation, "Of --method tsdf; default 4 voxels")
-      ->check(CLI::PositiveNumber);
+}
+
+void addTsdfOptions(CLI::App& app, Request& r) {
+  TsdfMethod& t = r.reconstruct.tsdf;
+  app.add_option("--truncation", r.truncation,
+                 "Of --method tsdf: auto: 4 voxels, or 3 x the noise; outliers: what stands for their share; "
+                 "or a length")
+      ->capture_default_str();
+  app.add_flag("--carve", r.carve,
+               "Of --method tsdf: space before a measurement is outside, whatever others measured there");
+  app.add_option("--weights", r.weights,
+                 "Of --method tsdf, what pixels are weighted by: some of "
+                 "confidence,noise,incidence,silhouette, or none")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"confidence", "noise", "incidence", "silhouette", "none"}));
+  app.add_option("--min-weight", t.least_weight,
+                 "Of --method tsdf: voxels with this weight or less are unknown")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--close-gaps", t.close_gaps, "Of --method tsdf: voxels that holes and rims are filled by")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--trim-rim", t.trim_rim,
+                 "Of --method tsdf: cut off frays narrower than twice so many triangles")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 void addOutputOptions(CLI::App& app, Request& r) {
@@ -115,6 +141,23 @@ std::optional<double> parseThickness(const std::string& text) {
   return value;
 }
 
+void resolveTsdf(const Request& r, TsdfMethod& tsdf) {
+  if (r.truncation == "outliers") {
+    tsdf.otherwise = TsdfMethod::Truncation::FromOutliers;
+  } else if (r.truncation != "auto") {
+    tsdf.truncation = parseNumber(r.truncation).value_or(-1);
+    if (!(tsdf.truncation > 0))
+      throw InvalidArgument("--truncation",
+                            "expected 'auto', 'outliers' or a positive length, found '" + r.truncation + "'");
+  }
+  if (r.carve) tsdf.carving = Carving::On;
+  if (r.weights.empty()) return;
+  const auto has = [&](const char* name) {
+    return std::find(r.weights.begin(), r.weights.end(), name) != r.weights.end();
+  };
+  tsdf.weights = {has("confidence"), has("noise"), has("incidence"), has("silhouette")};
+}
+
 void requireNew(const fs::path& path, const Request& request) {
   if (path.empty()) return;
   if (!request.overwrite) refuseExisting(path);
@@ -131,6 +174,7 @@ void resolve(Request& r) {
     o.border = r.border == "outside" ? Border::Outside : r.border == "solid" ? Border::Solid : Border::Free;
   }
   o.thickness = parseThickness(r.thickness);
+  resolveTsdf(r, o.tsdf);
   if (!r.grids.empty()) o.grids = ReconstructOptions::Grids::Keep;
 }
 
@@ -196,6 +240,7 @@ void addFuse(CLI::App& app, Action& action) {
                                           "Folder written by vdbfuse judge: use it instead of judging again");
   for (CLI::Option* option : judged_before) judgement->excludes(option);
   addEnergyOptions(sub, *request);
+  addTsdfOptions(sub, *request);
   addOutputOptions(sub, *request);
   sub.callback([&action, request] { action = [request] { fuse(*request); }; });
 }

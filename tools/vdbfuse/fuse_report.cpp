@@ -34,6 +34,15 @@ Json json(const Box& box) {
   return {box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()};
 }
 
+Json weightsJson(const WeightOptions& weights) {
+  Json names = Json::array();
+  if (weights.confidence) names.push_back("confidence");
+  if (weights.noise) names.push_back("noise");
+  if (weights.incidence) names.push_back("incidence");
+  if (weights.silhouette) names.push_back("silhouette");
+  return names;
+}
+
 Json optionsJson(const Reconstruction& result, const FuseContext& context) {
   const ReconstructOptions& o = context.options;
   Json j = {{"method", nameOf(o.method)},
@@ -54,6 +63,13 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"min_component", o.min_component},
             {"simplify", o.simplify},
             {"mu", o.mu}};
+  if (o.method == Method::Tsdf)
+    j.update({{"truncation", result.truncation},
+              {"carve", o.tsdf.carving == Carving::On},
+              {"weights", weightsJson(o.tsdf.weights)},
+              {"min_weight", o.tsdf.least_weight},
+              {"close_gaps", o.tsdf.close_gaps},
+              {"trim_rim", o.tsdf.trim_rim}});
   if (result.cut)
     j.update({{"completion", result.cut->completion ? "isotropic" : "none"},
               {"lambda", result.cut->lambda},

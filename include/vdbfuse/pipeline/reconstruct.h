@@ -8,7 +8,9 @@
 
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/fusion/evidence.h"
+#include "vdbfuse/fusion/measurement_weight.h"
 #include "vdbfuse/fusion/reliability.h"
+#include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/geometry/box.h"
 #include "vdbfuse/mesh/triangle_mesh.h"
 #include "vdbfuse/octree/graph.h"
@@ -21,6 +23,21 @@ namespace vdbfuse {
 enum class Method {
   Visibility,  ///< ρ, σ and a global minimum cut: watertight
   Tsdf,        ///< Curless–Levoy: open where nothing was measured
+};
+
+/// How Method::Tsdf works.
+struct TsdfMethod {
+  /// Length; 0: max(4 voxels, 3 × noise), or, FromOutliers, what stands for the share of outliers
+  /// (truncationFor()).
+  double truncation = 0.0;
+  enum class Truncation { Wide, FromOutliers } otherwise = Truncation::Wide;
+  /// On: every view says of all voxels before its measurements, of whichever view they come, that they are
+  /// outside.
+  Carving carving = Carving::Off;
+  WeightOptions weights;
+  double least_weight = 0.0;  ///< voxels with this weight or less are unknown
+  int close_gaps = 2;         ///< times that closeGaps() goes over the field
+  int trim_rim = 3;           ///< rings of trimRim(); 0: the rim stays frayed
 };
 
 /// Every zero or empty value means: from the data.
@@ -57,7 +74,7 @@ struct ReconstructOptions {
   double trim = 0.0;              ///< cut away what fewer views than this agree on; 0: keep all
   double min_component = 0.0;     ///< least diagonal of a component's bounding box, length; 0: keep all
   std::size_t simplify = 0;       ///< triangles to be left, about; 0: all
-  double truncation = 0.0;        ///< of the TSDF, length; default max(4 voxels, 3 × noise)
+  TsdfMethod tsdf;                ///< of Method::Tsdf
 
   /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
   /// /var/tmp) and pass by; where the cells do not fit, the reconstruction is refused before it begins.
@@ -121,6 +138,7 @@ struct Reconstruction {
   CalibrationReport calibration;
   GridReport grid;
   std::optional<CutReportSummary> cut;  ///< nothing for the TSDF
+  double truncation = 0;                ///< of the TSDF
   double invented_area_share = 0;       ///< share of the area that no view supports, before trimming
   std::size_t components_dropped = 0;   ///< below ReconstructOptions::min_component
   double simplify_error = 0;            ///< SimplifyReport::error

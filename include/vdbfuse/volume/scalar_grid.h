@@ -72,6 +72,7 @@ class ScalarGrid {
 
   /// Numbers and words that are written with the grid.
   std::map<std::string, std::string>& metadata();
+  const std::map<std::string, std::string>& metadata() const;
   void setKind(GridKind kind);
 
   struct Impl;
