@@ -16,12 +16,12 @@ DepthEdge depthEdge(const Projection& projection, double voxel) {
 EdgeBands edgeBands(const Image<float>& depth, const DepthEdge& edge) {
   constexpr std::size_t kRowsPerTask = 32;
   const int width = depth.width(), height = depth.height();
-  BitImage missing(width, height), at(width, height);
+  BitImage missing(width, height), at(width, height), lone(width, height);
   parallelFor(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      const DepthRows rows{depth.row(std::max(y - 1, 0)), depth.row(y),
-                           depth.row(std::min(y + 1, height - 1)), width};
-      markEdges(rows, edge, missing.row(y), at.row(y));
+      const DepthRows rows{y > 0 ? depth.row(y - 1) : nullptr, depth.row(y),
+                           y + 1 < height ? depth.row(y + 1) : nullptr, width};
+      markEdges(rows, edge, {missing.row(y), at.row(y), lone.row(y)});
     }
   });
   // From the middle of a patch one step leads to its rim, and another beside it.
@@ -29,7 +29,7 @@ EdgeBands edgeBands(const Image<float>& depth, const DepthEdge& edge) {
   for (int y = 0; y < height; ++y)
     for (std::size_t w = 0; w < at.words(); ++w) at.row(y)[w] |= beside_patch.row(y)[w];
   BitImage one = grown(at), two = grown(one);
-  return {std::move(at), std::move(one), std::move(two)};
+  return {std::move(at), std::move(one), std::move(two), std::move(lone)};
 }
 
 }  // namespace vdbfuse

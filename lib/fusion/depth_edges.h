@@ -18,9 +18,10 @@ struct DepthEdge {
 DepthEdge depthEdge(const Projection& projection, double voxel);
 
 /// Pixels at either side of a jump, or beside a patch of 3×3 pixels where nothing was measured (single
-/// missing pixels make no edge): those pixels, those within one step of them and those within two.
+/// missing pixels make no edge): those pixels, those within one step of them and those within two. And pixels
+/// that agree with none of the four beside them, but disagree with some: single wrong depths.
 struct EdgeBands {
-  BitImage at, within_one, within_two;
+  BitImage at, within_one, within_two, lone;
 };
 EdgeBands edgeBands(const Image<float>& depth, const DepthEdge& edge);
 

@@ -67,7 +67,10 @@ Image<float> weighRows(const Image<float>& depth, RowWeighting weighting, const 
   Image<float> weights(width, height);
   forEachRow(height, [&](int y) {
     RowWeighting row = weighting;
-    if (bands) row.bands = {bands->at.row(y), bands->within_one.row(y), bands->within_two.row(y)};
+    if (bands) {
+      row.bands = {bands->at.row(y), bands->within_one.row(y), bands->within_two.row(y)};
+      row.lone = bands->lone.row(y);
+    }
     const bool is_border = y < radius || y >= height - radius;
     if (pinhole != nullptr && !is_border)
       row.us = us.data(), row.v = static_cast<float>((y - pinhole->cy) / pinhole->fy);

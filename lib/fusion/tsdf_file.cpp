@@ -60,7 +60,7 @@ void describe(const TsdfVolumeState& state, std::map<std::string, std::string>& 
   words["voxel"] = text(state.frame.voxel);
   for (int a = 0; a < 3; ++a) words[std::string("offset_") + kAxes[a]] = text(state.frame.offset[a]);
   words["truncation"] = text(options.truncation);
-  words["carving"] = options.carving == Carving::On ? "on" : "off";
+  words["carved"] = state.is_carved ? "yes" : "no";
   words["storage"] = options.storage == TsdfStorage::Half ? "half" : "single";
   words["colors"] = options.colors == TsdfColors::Keep ? "keep" : "none";
   words["domain"] = options.domain ? "box" : "none";
@@ -77,7 +77,6 @@ std::pair<GridFrame, TsdfOptions> described(const Words& words) {
   frame.voxel = words.number("voxel");
   for (int a = 0; a < 3; ++a) frame.offset[a] = words.number(std::string("offset_") + kAxes[a]);
   options.truncation = words.number("truncation");
-  options.carving = words.is("carving", "on", "off") ? Carving::On : Carving::Off;
   options.storage = words.is("storage", "half", "single") ? TsdfStorage::Half : TsdfStorage::Single;
   options.colors = words.is("colors", "keep", "none") ? TsdfColors::Keep : TsdfColors::None;
   if (words.is("domain", "box", "none")) {
@@ -173,12 +172,14 @@ void TsdfVolume::write(const std::filesystem::path& path) const {
 
 TsdfVolume TsdfVolume::read(const std::filesystem::path& path) {
   const ScalarGrid distance = readGrid(path, "surface"), weight = readGrid(path, "weight");
-  const auto [frame, options] = described(Words(path, distance.metadata()));
+  const Words words(path, distance.metadata());
+  const auto [frame, options] = described(words);
   const std::vector<std::string> problems = validate(options);
   if (!problems.empty()) throw IoError(path, "metadata", "usable options", problems.front());
   TsdfVolume volume(frame, options);
   TsdfVolumeState& state = volume.impl_->state;
   state.changes = 1;
+  state.is_carved = words.is("carved", "yes", "no");
   for (std::size_t i = 0; i < weight.leafCount(); ++i) {
     const ScalarGrid::Leaf weights = weight.leaf(i);
     const ScalarGrid::Leaf distances = leafAt(path, distance, weights.origin);

@@ -93,41 +93,74 @@ HWY_INLINE void collect(const void* from, std::size_t stride, const std::int32_t
     std::memcpy(target + kBytes * k, source + stride * static_cast<std::size_t>(index[k]), kBytes);
 }
 
-// What a view says of the voxels of a leaf. Those in its band (a fifth of them or so) are set side by side:
-// which they are is decided by the nearest pixel, how far they lie from it by those around.
-class LeafMeasurements {
+// The pixels nearest to the voxels of a leaf.
+class NearestPixels {
  public:
-  /// `touched` + kBytes·i: what is about to be read of voxel i.
-  template <std::size_t kBytes>
-  HWY_INLINE LeafMeasurements(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                              float reach, const std::array<std::byte, kBytes>* touched)
-      : sight_(sight), pixels_(pixels), reach_(reach) {
+  struct Sight {
+    FloatMask seen;
+    FloatVec distance, weight;
+  };
+
+  HWY_INLINE NearestPixels(const LeafSight& sight, const DepthPixels& pixels) : sight_(sight) {
     const Floats df;
     const Ints di;
     alignas(64) std::array<std::int32_t, kTsdfLeaf> pixel;
-    const FloatVec furthest = set(bounds.most + reach);
     const auto round = [&](FloatVec x, FloatMask inside, int last) HWY_ATTR {
       // Rounding up may reach the next column.
       return hn::Min(hn::ConvertTo(di, hn::IfThenElseZero(inside, hn::Add(x, set(0.5f)))), hn::Set(di, last));
     };
     auto any = hn::Gt(hn::Zero(df), hn::Zero(df));
     for (std::size_t i = 0; i < kTsdfLeaf; i += hn::Lanes(df)) {
-      const FloatVec depth = hn::Load(df, &sight.depth[i]);
       const FloatVec u = hn::Load(df, &sight.u[i]), v = hn::Load(df, &sight.v[i]);
-      const auto inside =
-          hn::And(hn::Le(depth, furthest), insideImage(u, v, depth, pixels.width, pixels.height));
+      const auto inside = insideImage(u, v, hn::Load(df, &sight.depth[i]), pixels.width, pixels.height);
       any = hn::Or(any, inside);
       const IntVec index = hn::Add(hn::Mul(round(v, inside, pixels.height - 1), hn::Set(di, pixels.width)),
                                    round(u, inside, pixels.width - 1));
       const IntVec nothing = hn::Set(di, pixels.width * pixels.height);
       hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), index, nothing), di, &pixel[i]);
     }
-    if (hn::AllFalse(df, any)) return;
-    is_seen_ = true;
-    collect<sizeof(DepthPixel)>(pixels.at, sizeof(DepthPixel), pixel.data(), kTsdfLeaf, nearest_.data());
+    is_seen_ = !hn::AllFalse(df, any);
+    if (is_seen_)
+      collect<sizeof(DepthPixel)>(pixels.at, sizeof(DepthPixel), pixel.data(), kTsdfLeaf, values_.data());
+  }
+
+  /// Some voxel falls into the image.
+  bool isSeen() const { return is_seen_; }
+  /// What they say of the voxels from the i-th on. REQUIRES: isSeen().
+  HWY_INLINE Sight at(std::size_t i) const {
+    const Floats df;
+    FloatVec measured, weight;
+    hn::LoadInterleaved2(df, &values_[2 * i], measured, weight);
+    const auto seen = hn::And(hn::Gt(measured, hn::Zero(df)), hn::Gt(weight, hn::Zero(df)));
+    return {seen, hn::Sub(measured, hn::Load(df, &sight_.depth[i])), weight};
+  }
+
+ private:
+  const LeafSight& sight_;
+  bool is_seen_;
+  alignas(64) std::array<float, 2 * kTsdfLeaf> values_;
+};
+
+// What a view says of the voxels of a leaf. Those in its band (a fifth of them or so) are set side by side:
+// which they are is decided by the nearest pixel, how far they lie from it by those around.
+class LeafMeasurements {
+ public:
+  /// `touched` + kBytes·i: what is about to be read of voxel i.
+  template <std::size_t kBytes>
+  HWY_INLINE LeafMeasurements(const LeafSight& sight, const DepthPixels& pixels, float reach,
+                              const std::array<std::byte, kBytes>* touched)
+      : pixels_(pixels), nearest_(sight, pixels), reach_(reach) {
+    const Floats df;
+    const Ints di;
+    if (!nearest_.isSeen()) return;
     for (std::size_t i = 0; i < kTsdfLeaf; i += hn::Lanes(df)) {
-      const Nearest near = nearestOf(i);
-      const auto in_band = hn::And(near.seen, hn::Le(hn::Abs(near.distance), set(reach)));
+      const NearestPixels::Sight near = nearest_.at(i);
+      const auto reached = hn::And(near.seen, hn::Ge(near.distance, set(-reach)));
+      if (hn::AllFalse(df, reached)) continue;
+      const auto is_in_front = hn::Gt(near.distance, set(reach));
+      if (!hn::AllFalse(df, hn::And(near.seen, is_in_front)))
+        before_[before_count_++] = static_cast<std::uint16_t>(i);
+      const auto in_band = hn::AndNot(is_in_front, reached);
       if (hn::AllFalse(df, in_band)) continue;
       for (std::size_t line = 0; line < hn::Lanes(df) * kBytes; line += 64)
         __builtin_prefetch(reinterpret_cast<const std::byte*>(touched + i) + line, 1);
@@ -151,9 +184,9 @@ class LeafMeasurements {
   template <class Visit>
   HWY_INLINE void forEachBefore(float furthest, const Visit& visit) const {
     const Floats df;
-    if (!is_seen_) return;
-    for (std::size_t i = 0; i < kTsdfLeaf; i += hn::Lanes(df)) {
-      const Nearest near = nearestOf(i);
+    for (std::size_t n = 0; n < before_count_; ++n) {
+      const std::size_t i = before_[n];
+      const NearestPixels::Sight near = nearest_.at(i);
       const auto before = hn::And(
           near.seen, hn::And(hn::Gt(near.distance, set(reach_)), hn::Le(near.distance, set(furthest))));
       if (!hn::AllFalse(df, before)) visit(i, before, near.weight);
@@ -195,27 +228,13 @@ class LeafMeasurements {
   }
 
  private:
-  // What the pixels nearest to the voxels from the i-th on say.
-  struct Nearest {
-    FloatMask seen;
-    FloatVec distance, weight;
-  };
-  HWY_INLINE Nearest nearestOf(std::size_t i) const {
-    const Floats df;
-    FloatVec measured, weight;
-    hn::LoadInterleaved2(df, &nearest_[2 * i], measured, weight);
-    const auto seen = hn::And(hn::Gt(measured, hn::Zero(df)), hn::Gt(weight, hn::Zero(df)));
-    return {seen, hn::Sub(measured, hn::Load(df, &sight_.depth[i])), weight};
-  }
-
   // Compressed stores and the last vector may run beyond what is used.
   static constexpr std::size_t kRoom = kTsdfLeaf + 64;
-  const LeafSight& sight_;
   const DepthPixels& pixels_;
+  NearestPixels nearest_;
   float reach_;
-  bool is_seen_ = false;  ///< some voxel falls into the image
-  std::size_t count_ = 0;
-  alignas(64) std::array<float, 2 * kTsdfLeaf> nearest_;
+  std::size_t count_ = 0, before_count_ = 0;
+  std::array<std::uint16_t, kTsdfLeaf> before_;  ///< vectors that hold voxels before the band
   alignas(64) std::array<std::int32_t, kRoom> voxel_;
   alignas(64) std::array<float, kRoom> u_, v_, depth_, weight_;
 };
@@ -269,15 +288,14 @@ HWY_INLINE void mix(FloatVec distance, FloatVec weight, const TsdfUpdate& update
 
 template <class Voxels>
 HWY_INLINE LeafChange updateVoxels(const LeafSight& sight, const DepthPixels& pixels,
-                                   const DepthBounds& bounds, const TsdfUpdate& update,
-                                   typename Voxels::Value* voxels) {
+                                   const TsdfUpdate& update, typename Voxels::Value* voxels) {
   using Value = typename Voxels::Value;
   const Floats df;
   const LeafMeasurements measurements(
-      sight, pixels, bounds, update.truncation,
+      sight, pixels, update.truncation,
       reinterpret_cast<const std::array<std::byte, 2 * sizeof(Value)>*>(voxels));
   LeafChange change{static_cast<int>(measurements.count()), 0};
-  if (change.in_band == 0 && !update.carve) return change;
+  if (change.in_band == 0) return change;
   measurements.forEachBefore(
       update.furthest_before, [&](std::size_t i, FloatMask before, FloatVec weight) HWY_ATTR {
         change.before += static_cast<int>(hn::CountTrue(df, before));
@@ -295,24 +313,56 @@ HWY_INLINE LeafChange updateVoxels(const LeafSight& sight, const DepthPixels& pi
   return change;
 }
 
-LeafChange updateSingle(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                        const TsdfUpdate& update, float* voxels) {
-  return updateVoxels<SingleVoxels>(sight, pixels, bounds, update, voxels);
+template <class Voxels>
+HWY_INLINE int carveVoxels(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                           typename Voxels::Value* voxels) {
+  const Floats df;
+  const NearestPixels nearest(sight, pixels);
+  if (!nearest.isSeen()) return 0;
+  int count = 0;
+  for (std::size_t i = 0; i < kTsdfLeaf; i += hn::Lanes(df)) {
+    const NearestPixels::Sight near = nearest.at(i);
+    auto before = hn::And(near.seen, hn::Gt(near.distance, set(update.furthest_before)));
+    if (hn::AllFalse(df, before)) continue;
+    before = hn::And(before, hn::Gt(Voxels(voxels + 2 * i, update).weight, set(update.least_weight)));
+    if (hn::AllFalse(df, before)) continue;
+    count += static_cast<int>(hn::CountTrue(df, before));
+    mix<Voxels>(set(update.truncation), hn::IfThenElseZero(before, near.weight), update, voxels + 2 * i);
+  }
+  return count;
 }
 
-LeafChange updateHalf(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                      const TsdfUpdate& update, std::int16_t* voxels) {
-  return updateVoxels<HalfVoxels>(sight, pixels, bounds, update, voxels);
+LeafChange updateSingle(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                        float* voxels) {
+  return updateVoxels<SingleVoxels>(sight, pixels, update, voxels);
 }
 
-void weightsInBand(const LeafSight& sight, const DepthPixels& pixels, float reach, float* weights) {
+LeafChange updateHalf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                      std::int16_t* voxels) {
+  return updateVoxels<HalfVoxels>(sight, pixels, update, voxels);
+}
+
+int carveSingle(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update, float* voxels) {
+  return carveVoxels<SingleVoxels>(sight, pixels, update, voxels);
+}
+
+int carveHalf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+              std::int16_t* voxels) {
+  return carveVoxels<HalfVoxels>(sight, pixels, update, voxels);
+}
+
+void weighColors(const LeafSight& sight, const DepthPixels& pixels, float reach, float* weights) {
   const Floats df;
   std::fill_n(weights, kTsdfLeaf, 0.0f);
-  const LeafMeasurements measurements(sight, pixels, {0.0f, 1e30f}, reach,
+  const LeafMeasurements measurements(sight, pixels, reach,
                                       reinterpret_cast<const std::array<std::byte, sizeof(float)>*>(weights));
   alignas(64) std::array<float, hn::MaxLanes(df)> some;
-  measurements.forEachInBand([&](std::size_t k, FloatVec, FloatVec weight) HWY_ATTR {
-    hn::Store(weight, df, some.data());
+  measurements.forEachInBand([&](std::size_t k, FloatVec distance, FloatVec weight) HWY_ATTR {
+    // The nearer the better: off the surface, oblique rays meet it beside the voxel.
+    const FloatVec near = hn::Sub(set(1.0f), hn::Div(hn::Abs(distance), set(reach)));
+    const FloatVec counted = hn::Mul(weight, hn::Mul(near, near));
+    const FloatVec quanta = hn::ConvertTo(df, hn::NearestInt(hn::Mul(counted, set(kColorWeight))));
+    hn::Store(hn::Mul(hn::Max(quanta, set(1.0f)), set(1 / kColorWeight)), df, some.data());
     for (std::size_t j = 0; j < std::min(hn::Lanes(df), measurements.count() - k); ++j)
       weights[measurements.voxels()[k + j]] = some[j];
   });
@@ -378,7 +428,9 @@ namespace {
 HWY_EXPORT(sightPinhole);
 HWY_EXPORT(updateSingle);
 HWY_EXPORT(updateHalf);
-HWY_EXPORT(weightsInBand);
+HWY_EXPORT(carveSingle);
+HWY_EXPORT(carveHalf);
+HWY_EXPORT(weighColors);
 HWY_EXPORT(mixColors);
 
 }  // namespace
@@ -387,18 +439,27 @@ void sightLeaf(const PinholeRows& camera, float voxel, LeafSight& sight) {
   HWY_DYNAMIC_DISPATCH(sightPinhole)(camera, voxel, sight);
 }
 
-LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                      const TsdfUpdate& update, float* voxels) {
-  return HWY_DYNAMIC_DISPATCH(updateSingle)(sight, pixels, bounds, update, voxels);
+LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                      float* voxels) {
+  return HWY_DYNAMIC_DISPATCH(updateSingle)(sight, pixels, update, voxels);
 }
 
-LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                      const TsdfUpdate& update, std::int16_t* voxels) {
-  return HWY_DYNAMIC_DISPATCH(updateHalf)(sight, pixels, bounds, update, voxels);
+LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                      std::int16_t* voxels) {
+  return HWY_DYNAMIC_DISPATCH(updateHalf)(sight, pixels, update, voxels);
 }
 
-void bandWeights(const LeafSight& sight, const DepthPixels& pixels, float reach, float* weights) {
-  HWY_DYNAMIC_DISPATCH(weightsInBand)(sight, pixels, reach, weights);
+int carveLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update, float* voxels) {
+  return HWY_DYNAMIC_DISPATCH(carveSingle)(sight, pixels, update, voxels);
+}
+
+int carveLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+              std::int16_t* voxels) {
+  return HWY_DYNAMIC_DISPATCH(carveHalf)(sight, pixels, update, voxels);
+}
+
+void colorWeights(const LeafSight& sight, const DepthPixels& pixels, float reach, float* weights) {
+  HWY_DYNAMIC_DISPATCH(weighColors)(sight, pixels, reach, weights);
 }
 
 void updateColors(const LeafSight& sight, const ColorPixels& pixels, const float* weights, float sign,

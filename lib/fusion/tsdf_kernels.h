@@ -36,39 +36,42 @@ struct DepthPixels {
   DepthEdge edge;  ///< cells whose corners differ by more are not interpolated in
 };
 
-/// Depths that the voxels of a leaf may meet.
-struct DepthBounds {
-  float least = 0.0f, most = 0.0f;
-};
-
 /// How measurements change voxels.
 struct TsdfUpdate {
   float truncation = 0.0f;
   float sign = 1.0f;  ///< −1: take a view out again
-  /// Voxels up to so far before a measurement count as the truncation before it: in leaves that its band
-  /// reaches, or, when it carves, in all.
+  /// In a leaf with voxels in the band those up to so far before a measurement count as the truncation before
+  /// it.
   float furthest_before = 0.0f;
-  bool carve = false;
   float least_weight = 0.0f;  ///< half a quantum: what weighs less after a removal is nothing
 };
 
 struct LeafChange {
-  int in_band = 0;  ///< voxels within the truncation of a measurement
+  int in_band = 0;  ///< voxels within the truncation of a measurement; 0: nothing was changed
   int before = 0;   ///< voxels further before it
 };
 
 /// Voxels hold (mean distance, weight) in single precision.
-LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                      const TsdfUpdate& update, float* voxels);
+LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                      float* voxels);
 
 /// Voxels hold (mean distance / truncation · kHalfOne, weight · kHalfWeight) in 16 bits; the weight stops at
 /// kHalfMost.
 inline constexpr float kHalfOne = 32767.0f, kHalfWeight = 64.0f, kHalfMost = 32767.0f / kHalfWeight;
-LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const DepthBounds& bounds,
-                      const TsdfUpdate& update, std::int16_t* voxels);
+LeafChange updateLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+                      std::int16_t* voxels);
 
-/// The weight of each voxel's measurement where it lies within `reach`, else 0.
-void bandWeights(const LeafSight& sight, const DepthPixels& pixels, float reach, float* weights);
+/// Voxels that hold something and lie further than update.furthest_before before a measurement count as the
+/// truncation before it. Returns how many.
+int carveLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update, float* voxels);
+int carveLeaf(const LeafSight& sight, const DepthPixels& pixels, const TsdfUpdate& update,
+              std::int16_t* voxels);
+
+/// How much a voxel's colour counts: by its measurement's weight, less with the distance from it, since off
+/// the surface oblique rays meet it beside the voxel; 0 beyond `reach`. Multiples of 1/kColorWeight.
+void colorWeights(const LeafSight& sight, const DepthPixels& pixels, float reach, float* weights);
+
+inline constexpr float kColorOne = 256.0f, kColorWeight = 64.0f;
 
 /// A picture as the kernels read it, with pixels r + 256 g + 65536 b.
 struct ColorPixels {
@@ -78,7 +81,6 @@ struct ColorPixels {
 
 /// Voxels hold (r, g, b) · kColorOne and weight · kColorWeight in 16 bits. `sight`: of the picture's sensor.
 /// `weight`: of each voxel, 0 where the picture is not to be looked at.
-inline constexpr float kColorOne = 256.0f, kColorWeight = 64.0f;
 void updateColors(const LeafSight& sight, const ColorPixels& pixels, const float* weight, float sign,
                   std::uint16_t* voxels);
 

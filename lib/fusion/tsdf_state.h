@@ -65,6 +65,7 @@ struct TsdfVolumeState {
   std::optional<ColorTree> colors;         ///< leaves numbered like those of `voxels`
   std::vector<std::uint32_t> last_change;  ///< of each leaf: changes at that time
   std::uint32_t changes = 0;
+  bool is_carved = false;
 };
 
 struct TsdfVolume::Impl {

@@ -49,33 +49,37 @@ HWY_INLINE void forEachVector(int width, const Visit& visit) {
   if (x < width) visit(d, width - lanes);
 }
 
-void markRow(const DepthRows& rows, const DepthEdge& edge, std::uint64_t* missing, std::uint64_t* jumps) {
+void markRow(const DepthRows& rows, const DepthEdge& edge, const EdgeBits& bits) {
   forEachVector(rows.width, [&](auto d, int x) HWY_ATTR {
     using D = decltype(d);
     const auto none = hn::Zero(d);
     const auto relative = hn::Set(d, edge.relative), absolute = hn::Set(d, edge.absolute);
     const auto here = hn::LoadU(d, rows.here + x);
-    const auto jumps_to = [&](hn::Vec<D> other) HWY_ATTR {
+    const auto is_measured = hn::Gt(here, none);
+    auto jumps = hn::Gt(none, none), agrees = jumps;
+    const auto compare = [&](hn::Vec<D> other) HWY_ATTR {
       const auto least = hn::Min(here, other);
-      return hn::And(hn::Gt(least, none),
-                     hn::Gt(hn::AbsDiff(here, other), hn::MulAdd(least, relative, absolute)));
+      const auto both = hn::Gt(least, none);
+      const auto is_jump = hn::Gt(hn::AbsDiff(here, other), hn::MulAdd(least, relative, absolute));
+      jumps = hn::Or(jumps, hn::And(both, is_jump)), agrees = hn::Or(agrees, hn::AndNot(is_jump, both));
     };
-    auto is_edge = hn::Or(jumps_to(hn::LoadU(d, rows.above + x)), jumps_to(hn::LoadU(d, rows.below + x)));
-    // The pixel beyond an end is the last one.
+    // Beyond an end of the row, and of the image, nothing is measured.
     const int lanes = static_cast<int>(hn::Lanes(d));
-    const bool is_first = x == 0, is_last = x + lanes == rows.width;
-    HWY_ALIGN float edge_pixels[16];
+    HWY_ALIGN float at_end[16];
     const auto beside = [&](int step) HWY_ATTR {
       for (int i = 0; i < lanes; ++i) {
         const int at = x + i + step;
-        edge_pixels[i] = rows.here[at < 0 ? 0 : at < rows.width ? at : rows.width - 1];
+        at_end[i] = at < 0 || at >= rows.width ? 0.0f : rows.here[at];
       }
-      return hn::Load(d, edge_pixels);
+      return hn::Load(d, at_end);
     };
-    is_edge = hn::Or(is_edge, jumps_to(is_first ? beside(-1) : hn::LoadU(d, rows.here + x - 1)));
-    is_edge = hn::Or(is_edge, jumps_to(is_last ? beside(1) : hn::LoadU(d, rows.here + x + 1)));
-    storeBits(d, hn::Not(hn::Gt(here, none)), x, missing);
-    storeBits(d, is_edge, x, jumps);
+    if (rows.above != nullptr) compare(hn::LoadU(d, rows.above + x));
+    if (rows.below != nullptr) compare(hn::LoadU(d, rows.below + x));
+    compare(x == 0 ? beside(-1) : hn::LoadU(d, rows.here + x - 1));
+    compare(x + lanes == rows.width ? beside(1) : hn::LoadU(d, rows.here + x + 1));
+    storeBits(d, hn::Not(is_measured), x, bits.missing);
+    storeBits(d, jumps, x, bits.jumps);
+    storeBits(d, hn::AndNot(agrees, jumps), x, bits.lone);
   });
 }
 
@@ -123,6 +127,7 @@ void weigh(const DepthRows& rows, const RowWeighting& w, float* weights) {
       weight = hn::Mul(weight, cosine);
     }
     if (w.bands[0] != nullptr) {
+      weight = hn::IfThenZeroElse(loadBits(d, w.lone, x), weight);
       auto ramp = hn::Set(d, 1.0f);
       for (std::size_t band = 3; band-- > 0;)
         ramp = hn::IfThenElse(loadBits(d, w.bands[band], x), hn::Set(d, w.ramp[band]), ramp);
@@ -145,8 +150,8 @@ HWY_EXPORT(weigh);
 
 }  // namespace
 
-void markEdges(const DepthRows& rows, const DepthEdge& edge, std::uint64_t* missing, std::uint64_t* jumps) {
-  HWY_DYNAMIC_DISPATCH(markRow)(rows, edge, missing, jumps);
+void markEdges(const DepthRows& rows, const DepthEdge& edge, const EdgeBits& bits) {
+  HWY_DYNAMIC_DISPATCH(markRow)(rows, edge, bits);
 }
 
 void weighRow(const DepthRows& rows, const RowWeighting& weighting, float* weights) {

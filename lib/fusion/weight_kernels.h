@@ -9,15 +9,20 @@
 
 namespace vdbfuse {
 
-/// A row of a depth map, with one above and one below.
+/// A row of a depth map, with one above and one below, or null.
 struct DepthRows {
   const float *above, *here, *below;
   int width;
 };
 
-/// Sets the bits of pixels where nothing was measured, and of those whose depth jumps to one of the four
-/// neighbours. Bits are 0 before; rows above and below are the next ones, or the row itself.
-void markEdges(const DepthRows& rows, const DepthEdge& edge, std::uint64_t* missing, std::uint64_t* jumps);
+/// Rows of bits: pixels where nothing was measured; whose depth jumps to one of the four neighbours; to all
+/// of those that are measured.
+struct EdgeBits {
+  std::uint64_t *missing, *jumps, *lone;
+};
+
+/// Sets bits, which are 0 before. `rows`: the next ones; null beyond the image.
+void markEdges(const DepthRows& rows, const DepthEdge& edge, const EdgeBits& bits);
 
 /// What a pixel's weight is the product of; see measurement_weight.h.
 struct RowWeighting {
@@ -37,6 +42,7 @@ struct RowWeighting {
   /// Bits of EdgeBands, and the weight there; null: no silhouette.
   std::array<const std::uint64_t*, 3> bands{};
   std::array<float, 3> ramp{};
+  const std::uint64_t* lone = nullptr;  ///< bits of pixels that weigh nothing
 };
 
 inline constexpr float kUnknownCosine = 0.5f;

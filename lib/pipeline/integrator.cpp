@@ -96,7 +96,11 @@ Integrator::Integrator(TsdfVolume volume, const IntegratorOptions& options)
 Integrator::~Integrator() = default;
 
 TsdfReport Integrator::integrate(const View& view) {
-  return impl_->withInput(view, [&](const TsdfInput& input) { return impl_->volume.integrate(input); });
+  return impl_->withInput(view, [&](const TsdfInput& input) {
+    const TsdfReport report = impl_->volume.integrate(input);
+    if (impl_->options.carving == IntegratorOptions::Carving::On) impl_->volume.carve(input);
+    return report;
+  });
 }
 
 TsdfReport Integrator::remove(const View& view) {

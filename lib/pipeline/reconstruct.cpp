@@ -99,21 +99,20 @@ double chooseTruncation(const TsdfMethod& method, double voxel, const Calibratio
 
 // Views that are believed as far as they were judged.
 TsdfVolume integrateViews(const JudgedViews& judged, const GridFrame& frame, const TsdfOptions& options,
-                          const WeightOptions& weighting, const Progress& progress) {
+                          const TsdfMethod& method, const Progress& progress) {
   TsdfVolume volume(frame, options);
   const auto with_each = [&](const char* name, const auto& use) {
     ProgressStep step(progress, name, judged.views.size());
     for (const JudgedView& view : judged.views) {
-      const Image<float> weights = measurementWeights(view, judged.sensor.noise, frame.voxel, weighting);
+      const Image<float> weights = measurementWeights(view, judged.sensor.noise, frame.voxel, method.weights);
       use(TsdfInput{view, view.depth, &weights});
       letGo(view);
       step.advance();
     }
   };
-  // So that each view carves what any view makes.
-  if (options.carving == Carving::On)
-    with_each("allocate", [&](const TsdfInput& input) { volume.allocate(input); });
   with_each("integrate", [&](const TsdfInput& input) { volume.integrate(input); });
+  if (method.carving == TsdfMethod::Carving::On)
+    with_each("carve", [&](const TsdfInput& input) { volume.carve(input); });
   return volume;
 }
 
@@ -125,8 +124,7 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
   TsdfOptions tsdf;
   tsdf.truncation = result.truncation = chooseTruncation(method, frame.voxel, result.calibration);
   tsdf.domain = domain;
-  tsdf.carving = method.carving;
-  const TsdfVolume volume = integrateViews(judged, frame, tsdf, method.weights, progress);
+  const TsdfVolume volume = integrateViews(judged, frame, tsdf, method, progress);
 
   timer.start("surface");
   ScalarGrid distance = volume.distance(static_cast<float>(method.least_weight));

@@ -2,6 +2,7 @@
 #include "volume/voxel_tree.h"
 
 #include <openvdb/tree/Tree.h>
+#include <openvdb/tree/ValueAccessor.h>
 
 #include <vector>
 
@@ -69,6 +70,17 @@ std::optional<std::uint32_t> VoxelTree<T, Channels>::find(const Index3& origin) 
   const auto* leaf = impl_->tree.probeConstLeaf(toCoord(origin));
   if (leaf == nullptr) return std::nullopt;
   return leaf->transientData();
+}
+
+template <class T, int Channels>
+void VoxelTree<T, Channels>::find(std::span<const Index3> origins,
+                                  std::optional<std::uint32_t>* numbers) const {
+  // Not registered with the tree, which other threads read as well.
+  openvdb::tree::ValueAccessor<const typename Impl::Tree, /*IsSafe=*/false> accessor(impl_->tree);
+  for (const Index3& origin : origins) {
+    const auto* leaf = accessor.probeConstLeaf(toCoord(origin));
+    *numbers++ = leaf == nullptr ? std::nullopt : std::optional(leaf->transientData());
+  }
 }
 
 template <class T, int Channels>

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "vdbfuse/volume/scalar_grid.h"
 
@@ -30,6 +31,8 @@ class VoxelTree {
   T* values(std::size_t leaf) const;
   /// Not while another thread inserts.
   std::optional<std::uint32_t> find(const Index3& origin) const;
+  /// find() of many: faster where they are near each other.
+  void find(std::span<const Index3> origins, std::optional<std::uint32_t>* numbers) const;
   /// The number of a new leaf, all zero. REQUIRES: multiples of 8; no leaf is there.
   std::uint32_t insert(const Index3& origin);
   std::size_t memoryBytes() const;

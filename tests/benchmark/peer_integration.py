@@ -57,7 +57,7 @@ def peer_milliseconds(args, voxel, threads):
 
 
 def our_rows(args, voxel, threads, frames):
-    command = [args.program, args.folder, "--frames", str(frames), "--voxel", str(voxel), "--threads", str(threads), "--json"]
+    command = [args.program, "speed", args.folder, "--frames", str(frames), "--voxel", str(voxel), "--threads", str(threads), "--json"]
     lines = subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
     return {row["setting"]: row for row in map(json.loads, lines)}
 

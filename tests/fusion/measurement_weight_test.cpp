@@ -108,6 +108,23 @@ TEST(MeasurementWeights, SingleMissingPixelsMakeNoEdgeAndMissingPatchesDo) {
   EXPECT_EQ(weights(36, 31), 1.0f);
 }
 
+TEST(MeasurementWeights, ALoneWrongDepthWeighsNothingAndALoneMeasurementCounts) {
+  View view = tilted(0);
+  view.map.depth(10, 10) = 1.2f, view.map.depth(0, 20) = 1.2f, view.map.depth(60, 40) = 1.2f;
+  for (int y = 19; y < 22; ++y)
+    for (int x = 29; x < 32; ++x)
+      if (x != 30 || y != 20) view.map.depth(x, y) = kInvalidDepth;
+  view.map.depth(40, 10) = view.map.depth(41, 10) = 1.2f;  // two agree
+  WeightOptions options = kNone;
+  options.silhouette = true;
+  const Image<float> weights = measurementWeights(view, std::nullopt, 0.01, options);
+  for (const auto& [x, y] : {std::pair(10, 10), std::pair(0, 20), std::pair(60, 40)})
+    EXPECT_EQ(weights(x, y), 0.0f);
+  EXPECT_FLOAT_EQ(weights(10, 11), 1 / 7.0f);
+  EXPECT_EQ(weights(30, 20), 1.0f);
+  EXPECT_FLOAT_EQ(weights(40, 10), 1 / 7.0f);
+}
+
 TEST(MeasurementWeights, ConfidenceCountsAsAProbability) {
   View view = tilted(0);
   view.map.confidence = Image<float>(61, 41, 0.25f);

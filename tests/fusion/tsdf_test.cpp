@@ -229,11 +229,12 @@ TEST(Tsdf, DepthEdgesAreNotInterpolatedAcross) {
 TEST(Tsdf, TheSameComesOutForEveryNumberOfThreads) {
   const std::vector<View> views = coloredViews(12);
   TsdfOptions o = options();
-  o.colors = TsdfColors::Keep, o.carving = Carving::On;
+  o.colors = TsdfColors::Keep;
   std::vector<TsdfVolume> volumes;
   for (const int threads : {1, 2, 5}) {
     const ThreadLimit limit(threads);
     volumes.push_back(fuse(views, o));
+    for (const View& view : views) volumes.back().carve({view, view.map.depth});
   }
   for (std::size_t i = 1; i < volumes.size(); ++i) {
     expectSame(volumes[0], volumes[i]);
@@ -320,29 +321,37 @@ TEST(Tsdf, CarvingTakesAwayWhatOthersSeeThrough) {
     for (const Eigen::Vector3f& v : extractSurface(volume.distance()).vertices) count += v.z() > 0.3f ? 1 : 0;
     return count;
   };
-  TsdfOptions carving = options();
-  carving.carving = Carving::On;
-  TsdfVolume allocated({kVoxel}, carving);
-  for (const View& view : views) allocated.allocate({view, view.map.depth});
-  integrate(views, allocated);
-  EXPECT_GT(floats(fuse(views)), 30u);
-  EXPECT_EQ(floats(allocated), 0u);
-  EXPECT_THROW(allocated.remove({views[0], views[0].map.depth}), InvalidArgument);
+  TsdfVolume volume = fuse(views);
+  EXPECT_GT(floats(volume), 30u);
+  const std::size_t leaves = volume.leafCount();
+  for (const View& view : views) volume.carve({view, view.map.depth});
+  EXPECT_EQ(floats(volume), 0u);
+  EXPECT_EQ(volume.leafCount(), leaves);
+  EXPECT_THROW(volume.remove({views[0], views[0].map.depth}), InvalidArgument);
 }
 
-TEST(Tsdf, CarvingAfterAllocationDoesNotDependOnTheOrderOfTheViews) {
+TEST(Tsdf, CarvingDoesNotDependOnTheOrderOfTheViewsAndMakesNothingKnown) {
   const std::vector<View> views = test::sphereViews(10);
-  TsdfOptions carving = options();
-  carving.carving = Carving::On;
-  TsdfVolume forth({kVoxel}, carving), back({kVoxel}, carving);
-  for (const View& view : views)
-    forth.allocate({view, view.map.depth}), back.allocate({view, view.map.depth});
+  const TsdfVolume whole = fuse(views);
+  TsdfVolume forth = fuse(views), back = fuse(views);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    forth.integrate({views[i], views[i].map.depth});
+    forth.carve({views[i], views[i].map.depth});
     const View& other = views[views.size() - 1 - i];
-    back.integrate({other, other.map.depth});
+    back.carve({other, other.map.depth});
   }
   expectSame(forth, back, 1e-5f);
+  EXPECT_TRUE(difference(whole.distance(), forth.distance()).same_known);
+}
+
+TEST(Tsdf, ASingleWrongDepthDoesNotCarve) {
+  const std::vector<View> views(
+      3, test::castView({0, 0, 2}, {0, 0, 0}, {64, 64, 80, 80, 31.5, 31.5, {}}, test::planeCaster(0)));
+  TsdfVolume volume = fuse(views);
+  View wrong = views[0];
+  wrong.map.depth(32, 32) = wrong.map.depth(20, 20) = 5;
+  const ScalarGrid before = volume.distance();
+  volume.carve({wrong, wrong.map.depth});
+  EXPECT_EQ(difference(before, volume.distance()).largest, 0.0f);
 }
 
 TEST(Tsdf, VerticesTakeTheColourThatTheirViewsHave) {

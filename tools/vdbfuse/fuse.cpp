@@ -150,7 +150,7 @@ void resolveTsdf(const Request& r, TsdfMethod& tsdf) {
       throw InvalidArgument("--truncation",
                             "expected 'auto', 'outliers' or a positive length, found '" + r.truncation + "'");
   }
-  if (r.carve) tsdf.carving = Carving::On;
+  if (r.carve) tsdf.carving = TsdfMethod::Carving::On;
   if (r.weights.empty()) return;
   const auto has = [&](const char* name) {
     return std::find(r.weights.begin(), r.weights.end(), name) != r.weights.end();

@@ -65,7 +65,7 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"mu", o.mu}};
   if (o.method == Method::Tsdf)
     j.update({{"truncation", result.truncation},
-              {"carve", o.tsdf.carving == Carving::On},
+              {"carve", o.tsdf.carving == TsdfMethod::Carving::On},
               {"weights", weightsJson(o.tsdf.weights)},
               {"min_weight", o.tsdf.least_weight},
               {"close_gaps", o.tsdf.close_gaps},

@@ -22,12 +22,6 @@ enum class TsdfStorage {
   Half,    ///< 16 bits each: 4 bytes; distances to truncation/32767, weights stop at 511
 };
 
-/// What a view says of voxels further before its measurement than the truncation.
-enum class Carving {
-  Off,  ///< nothing
-  On,   ///< that they are outside, where they are stored already
-};
-
 enum class TsdfColors {
   None,
   Keep,  ///< a mean colour near the surface: 8 bytes a voxel more
@@ -38,7 +32,6 @@ struct TsdfOptions {
   /// smaller keeps thin parts apart, larger survives noise and errors of the poses. See truncationFor().
   double truncation = 0.0;
   std::optional<Box> domain;  ///< leaves that do not meet it are not made
-  Carving carving = Carving::Off;
   TsdfStorage storage = TsdfStorage::Single;
   TsdfColors colors = TsdfColors::None;
 };
@@ -84,11 +77,13 @@ class TsdfVolume {
   /// Throws InvalidArgument when images and projection do not fit.
   TsdfReport integrate(const TsdfInput& input);
   /// Takes a view out that was integrated with the same input. Voxels that no other view saw become unknown.
-  /// Throws InvalidArgument with Carving::On, where what a view did depends on what came before it.
+  /// Throws InvalidArgument once the volume was carved: what a view did then depends on what came before it.
   TsdfReport remove(const TsdfInput& input);
-  /// Makes the leaves that integrate() would make: with carving, all views count alike when all were
-  /// allocated first.
-  std::size_t allocate(const TsdfInput& input);
+  /// What a view says of voxels further before its measurement than those that integrate() counts: that they
+  /// are outside. Only voxels that are known already, so that nothing appears that was not measured; and only
+  /// by pixels that two of the four beside them agree with, since single wrong depths would carve through
+  /// everything. For a set of views: integrate all, then carve with all.
+  TsdfReport carve(const TsdfInput& input);
 
   const GridFrame& frame() const;
   const TsdfOptions& options() const;

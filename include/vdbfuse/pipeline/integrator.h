@@ -19,6 +19,8 @@ struct IntegratorOptions {
   /// truncation 0: 4 voxels.
   TsdfOptions tsdf;
   WeightOptions weights;
+  /// On: each view carves what was integrated before it (TsdfVolume::carve()); less than twice the time.
+  enum class Carving { Off, On } carving = Carving::Off;
   /// Of the sensor's depth (sensorPreset()); without one, near and far count the same.
   std::optional<NoiseLaw> noise;
   /// Voxels with this weight or less are unknown to mesh(). A view counts 1 where it sees a surface from the

@@ -31,9 +31,8 @@ struct TsdfMethod {
   /// (truncationFor()).
   double truncation = 0.0;
   enum class Truncation { Wide, FromOutliers } otherwise = Truncation::Wide;
-  /// On: every view says of all voxels before its measurements, of whichever view they come, that they are
-  /// outside.
-  Carving carving = Carving::Off;
+  /// TsdfVolume::carve() with all views.
+  enum class Carving { Off, On } carving = Carving::Off;
   WeightOptions weights;
   double least_weight = 0.0;  ///< voxels with this weight or less are unknown
   int close_gaps = 2;         ///< times that closeGaps() goes over the field
