@@ -6,6 +6,7 @@
 
 #include "fusion/scenes.h"
 #include "tool/run_tool.h"
+#include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/io/png.h"
@@ -289,6 +290,31 @@ TEST_F(FuseTool, ColoursTheMeshFromPicturesUnlessToldNotTo) {
   for (const Rgb8& color : mesh.colors) ASSERT_EQ(color, (Rgb8{200, 100, 50}));
   ASSERT_EQ(runTool(folder, "fuse scan b.ply --resolution 24 --color none --quiet").exit_code, 0);
   EXPECT_TRUE(readMesh(folder / "b.ply").colors.empty());
+}
+
+TEST_F(FuseTool, TheTsdfTakesItsOptionsAndSaysSo) {
+  const ToolResult run =
+      runTool(folder,
+              "fuse scan a.ply --method tsdf --voxel 0.04 --truncation 0.2 --carve --weights "
+              "incidence,noise --min-weight 0.1 --json a.json --save-grids a.vdb --quiet");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json options = nlohmann::json::parse(readText(folder / "a.json"))["options"];
+  EXPECT_EQ(options["truncation"], 0.2);
+  EXPECT_EQ(options["carve"], true);
+  EXPECT_EQ(options["weights"], (nlohmann::json{"noise", "incidence"}));
+  EXPECT_EQ(options["min_weight"], 0.1);
+  const TsdfVolume volume = TsdfVolume::read(folder / "a.vdb");
+  EXPECT_EQ(volume.options().truncation, 0.2);
+  EXPECT_GT(volume.leafCount(), 10u);
+  EXPECT_THAT(complaint("scan b.ply --method tsdf --truncation wide"),
+              HasSubstr("expected 'auto', 'outliers' or a positive length, found 'wide'"));
+  ASSERT_EQ(runTool(folder,
+                    "fuse scan c.ply --method tsdf --voxel 0.04 --truncation outliers --weights none "
+                    "--json c.json --quiet")
+                .exit_code,
+            0);
+  EXPECT_TRUE(nlohmann::json::parse(readText(folder / "c.json"))["options"]["weights"].empty());
+  EXPECT_LT(nlohmann::json::parse(readText(folder / "c.json"))["options"]["truncation"], 0.12);
 }
 
 TEST_F(FuseTool, ReadersOfOtherFormatsOfMeshesGetThem) {
