@@ -31,7 +31,8 @@ class BitImage {
   std::vector<std::uint64_t> bits_;
 };
 
-/// Every bit with those of its left and right neighbours; 0 beyond the ends.
+/// The word of a row with every bit that of its right (step 1) or left (step −1) neighbour; 0 beyond the
+/// ends.
 inline std::uint64_t besides(const std::uint64_t* row, std::size_t word, std::size_t words, int step) {
   const std::uint64_t before = word > 0 ? row[word - 1] : 0, here = row[word],
                       after = word + 1 < words ? row[word + 1] : 0;

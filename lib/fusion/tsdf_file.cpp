@@ -109,8 +109,9 @@ void fill(TsdfVolumeState::SingleTree& tree, std::size_t leaf, const ScalarGrid:
           const ScalarGrid::Leaf& weight, double) {
   float* v = tree.values(leaf);
   for (std::size_t i = 0; i < kTsdfLeaf; ++i) {
-    v[2 * i] = weight.values[i] > 0 ? distance.values[i] : 0.0f;
-    v[2 * i + 1] = weight.values[i];
+    const bool is_known = weight.values[i] > 0 && !std::isnan(distance.values[i]);
+    v[2 * i] = is_known ? distance.values[i] : 0.0f;
+    v[2 * i + 1] = is_known ? weight.values[i] : 0.0f;
   }
 }
 
@@ -122,8 +123,9 @@ void fill(TsdfVolumeState::HalfTree& tree, std::size_t leaf, const ScalarGrid::L
     return static_cast<std::int16_t>(std::clamp(std::nearbyint(x), -kHalfOne, kHalfOne));
   };
   for (std::size_t i = 0; i < kTsdfLeaf; ++i) {
-    v[2 * i] = weight.values[i] > 0 ? narrow(distance.values[i] * scale) : std::int16_t{0};
-    v[2 * i + 1] = narrow(weight.values[i] * kHalfWeight);
+    const bool is_known = weight.values[i] > 0 && !std::isnan(distance.values[i]);
+    v[2 * i] = is_known ? narrow(distance.values[i] * scale) : std::int16_t{0};
+    v[2 * i + 1] = is_known ? narrow(weight.values[i] * kHalfWeight) : std::int16_t{0};
   }
 }
 

@@ -121,9 +121,12 @@ void weigh(const DepthRows& rows, const RowWeighting& w, float* weights) {
       weight = hn::Mul(weight, hn::Div(half, hn::MulAdd(s, s, half)));
     }
     if (w.us != nullptr) {
-      const int lanes = static_cast<int>(hn::Lanes(d));
-      const bool at_end = x < w.radius || x + lanes > rows.width - w.radius;
-      auto cosine = at_end ? hn::Set(d, kUnknownCosine) : cosineAt(d, rows, w, x);
+      const auto column = hn::Add(hn::Iota(d, 0.0f), hn::Set(d, static_cast<float>(x)));
+      const auto has_neighbours =
+          hn::And(hn::Ge(column, hn::Set(d, static_cast<float>(w.radius))),
+                  hn::Lt(column, hn::Set(d, static_cast<float>(rows.width - w.radius))));
+      // Beside the ends of the row lie other rows.
+      const auto cosine = hn::IfThenElse(has_neighbours, cosineAt(d, rows, w, x), hn::Set(d, kUnknownCosine));
       weight = hn::Mul(weight, cosine);
     }
     if (w.bands[0] != nullptr) {
