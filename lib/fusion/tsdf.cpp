@@ -72,6 +72,10 @@ TsdfReport TsdfVolume::carve(const TsdfInput& input) {
   return carveView(input, impl_->state);
 }
 
+void TsdfVolume::growDomain(const Box& domain) {
+  if (impl_->state.options.domain) impl_->state.options.domain->extend(domain);
+}
+
 const GridFrame& TsdfVolume::frame() const { return impl_->state.frame; }
 const TsdfOptions& TsdfVolume::options() const { return impl_->state.options; }
 std::size_t TsdfVolume::leafCount() const { return impl_->state.leafCount(); }

@@ -97,14 +97,27 @@ double chooseTruncation(const TsdfMethod& method, double voxel, const Calibratio
   return std::max(4 * voxel, 3 * calibration.noise_scale);
 }
 
+TsdfVolume startVolume(const GridFrame& frame, const Box& domain, const ReconstructOptions& options,
+                       const CalibrationReport& calibration) {
+  if (options.tsdf.start) {
+    TsdfVolume volume = std::move(*options.tsdf.start);
+    volume.growDomain(domain);
+    return volume;
+  }
+  TsdfOptions tsdf;
+  tsdf.truncation = chooseTruncation(options.tsdf, frame.voxel, calibration);
+  tsdf.domain = domain;
+  return {frame, tsdf};
+}
+
 // Views that are believed as far as they were judged.
-TsdfVolume integrateViews(const JudgedViews& judged, const GridFrame& frame, const TsdfOptions& options,
-                          const TsdfMethod& method, const Progress& progress) {
-  TsdfVolume volume(frame, options);
+void integrateViews(const JudgedViews& judged, const TsdfMethod& method, const Progress& progress,
+                    TsdfVolume& volume) {
   const auto with_each = [&](const char* name, const auto& use) {
     ProgressStep step(progress, name, judged.views.size());
     for (const JudgedView& view : judged.views) {
-      const Image<float> weights = measurementWeights(view, judged.sensor.noise, frame.voxel, method.weights);
+      const Image<float> weights =
+          measurementWeights(view, judged.sensor.noise, volume.frame().voxel, method.weights);
       use(TsdfInput{view, view.depth, &weights});
       letGo(view);
       step.advance();
@@ -113,7 +126,6 @@ TsdfVolume integrateViews(const JudgedViews& judged, const GridFrame& frame, con
   with_each("integrate", [&](const TsdfInput& input) { volume.integrate(input); });
   if (method.carving == TsdfMethod::Carving::On)
     with_each("carve", [&](const TsdfInput& input) { volume.carve(input); });
-  return volume;
 }
 
 void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
@@ -121,10 +133,9 @@ void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& doma
               Reconstruction& result) {
   timer.start("integrate");
   const TsdfMethod& method = options.tsdf;
-  TsdfOptions tsdf;
-  tsdf.truncation = result.truncation = chooseTruncation(method, frame.voxel, result.calibration);
-  tsdf.domain = domain;
-  const TsdfVolume volume = integrateViews(judged, frame, tsdf, method, progress);
+  TsdfVolume volume = startVolume(frame, domain, options, result.calibration);
+  integrateViews(judged, method, progress, volume);
+  result.truncation = volume.options().truncation;
 
   timer.start("surface");
   ScalarGrid distance = volume.distance(static_cast<float>(method.least_weight));

@@ -60,6 +60,8 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(options.trim >= 0, "trim must not be negative");
   require(options.min_component >= 0, "min_component must not be negative");
   require(options.tsdf.truncation >= 0, "truncation must be positive");
+  require(!options.tsdf.start || options.voxel == options.tsdf.start->frame().voxel,
+          "voxel must be that of the volume to go on with");
   require(options.tsdf.least_weight >= 0, "least_weight must not be negative");
   require(options.tsdf.close_gaps >= 0 && options.tsdf.trim_rim >= 0,
           "close_gaps and trim_rim must not be negative");

@@ -317,6 +317,25 @@ TEST_F(FuseTool, TheTsdfTakesItsOptionsAndSaysSo) {
   EXPECT_LT(nlohmann::json::parse(readText(folder / "c.json"))["options"]["truncation"], 0.12);
 }
 
+TEST_F(FuseTool, GoesOnWithAVolumeThatWasSaved) {
+  ASSERT_EQ(
+      runTool(folder, "fuse scan a.ply --method tsdf --voxel 0.04 --save-grids a.vdb --quiet").exit_code, 0);
+  const ToolResult run =
+      runTool(folder, "fuse scan b.ply --continue a.vdb --save-grids b.vdb --json b.json --quiet");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  // The same views twice: the same distances, and twice the weight.
+  const ScalarGrid once = readGrid(folder / "a.vdb", "weight"), twice = readGrid(folder / "b.vdb", "weight");
+  ASSERT_EQ(once.leafCount(), twice.leafCount());
+  for (std::size_t leaf = 0; leaf < once.leafCount(); ++leaf)
+    for (std::size_t k = 0; k < ScalarGrid::kLeafSize; ++k)
+      ASSERT_EQ(2 * once.leaf(leaf).values[k], twice.leaf(leaf).values[k]);
+  EXPECT_EQ(nlohmann::json::parse(readText(folder / "b.json"))["options"]["voxel"], 0.04);
+  const ScalarGrid other("surface", {0.04}, kUnknown);
+  writeGrids(folder / "other.vdb", {&other});
+  EXPECT_THAT(complaint("scan c.ply --continue other.vdb"), HasSubstr("a float grid named 'weight'"));
+  EXPECT_EQ(runTool(folder, "fuse scan c.ply --continue a.vdb --voxel 0.02 --quiet").exit_code, 2);
+}
+
 TEST_F(FuseTool, ReadersOfOtherFormatsOfMeshesGetThem) {
   for (const std::string name : {"a.obj", "a.stl"}) {
     ASSERT_EQ(runTool(folder, "fuse scan --resolution 24 --quiet " + name).exit_code, 0);

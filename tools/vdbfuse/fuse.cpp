@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 
 #include "choice.h"
 #include "commands.h"
@@ -35,7 +36,7 @@ const std::map<std::string, CompletionOptions::Kind> kCompletions = {
     {"isotropic", CompletionOptions::Kind::Isotropic}, {"none", CompletionOptions::Kind::None}};
 
 struct Request {
-  fs::path input, output, judgement, grids, json;
+  fs::path input, output, judgement, grids, json, volume;
   SensorArguments sensor;
   ReconstructOptions reconstruct;
   std::string border = "auto", thickness = "auto", color = "auto", truncation = "auto";
@@ -102,6 +103,12 @@ void addTsdfOptions(CLI::App& app, Request& r) {
                  "Of --method tsdf: auto: 4 voxels, or 3 x the noise; outliers: what stands for their share; "
                  "or a length")
       ->capture_default_str();
+  app.add_option("--continue", r.volume,
+                 "Of --method tsdf: a volume that --save-grids wrote, to take more views in")
+      ->check(CLI::ExistingFile)
+      ->excludes("--voxel")
+      ->excludes("--resolution")
+      ->excludes("--truncation");
   app.add_flag("--carve", r.carve,
                "Of --method tsdf: space before a measurement is outside, whatever others measured there");
   app.add_option("--weights", r.weights,
@@ -150,6 +157,7 @@ void resolveTsdf(const Request& r, TsdfMethod& tsdf) {
       throw InvalidArgument("--truncation",
                             "expected 'auto', 'outliers' or a positive length, found '" + r.truncation + "'");
   }
+  if (!r.volume.empty()) tsdf.start = std::make_shared<TsdfVolume>(TsdfVolume::read(r.volume));
   if (r.carve) tsdf.carving = TsdfMethod::Carving::On;
   if (r.weights.empty()) return;
   const auto has = [&](const char* name) {
@@ -175,6 +183,7 @@ void resolve(Request& r) {
   }
   o.thickness = parseThickness(r.thickness);
   resolveTsdf(r, o.tsdf);
+  if (o.tsdf.start) o.voxel = o.tsdf.start->frame().voxel, o.method = Method::Tsdf;
   if (!r.grids.empty()) o.grids = ReconstructOptions::Grids::Keep;
 }
 

@@ -85,6 +85,9 @@ class TsdfVolume {
   /// everything. For a set of views: integrate all, then carve with all.
   TsdfReport carve(const TsdfInput& input);
 
+  /// Lets leaves be made there, too.
+  void growDomain(const Box& domain);
+
   const GridFrame& frame() const;
   const TsdfOptions& options() const;
   std::size_t leafCount() const;

@@ -2,6 +2,7 @@
 // From depth maps to a surface: the whole line in one call.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,8 +36,11 @@ struct TsdfMethod {
   enum class Carving { Off, On } carving = Carving::Off;
   WeightOptions weights;
   double least_weight = 0.0;  ///< voxels with this weight or less are unknown
-  int close_gaps = 2;         ///< times that closeGaps() goes over the field
-  int trim_rim = 3;           ///< rings of trimRim(); 0: the rim stays frayed
+  /// Goes on with this volume, and takes it over: its voxels and truncation count. Set
+  /// ReconstructOptions::voxel to its voxels' size.
+  std::shared_ptr<TsdfVolume> start;
+  int close_gaps = 2;  ///< times that closeGaps() goes over the field
+  int trim_rim = 3;    ///< rings of trimRim(); 0: the rim stays frayed
 };
 
 /// Every zero or empty value means: from the data.
