@@ -62,7 +62,7 @@ struct TsdfReport {
 /// Voxels near measurements, in OpenVDB leaves of 8³. A voxel whose nearest pixel lies within ±truncation of
 /// it takes the depth D between the four pixels around its projection, or that of the nearest one where they
 /// do not belong to one surface; D − d goes into its mean with the pixel's weight. In the leaves where there
-/// are such voxels those up to twice the truncation before the measurement count as the truncation before it,
+/// are such voxels those up to 1.5 truncations before the measurement count as one before it,
 /// so that a surface seen under a grazing angle has known voxels on both sides. Weights are rounded to 1/64
 /// (and are at least that, unless 0): sums of weights are exact, so that a view can be taken out again. Not
 /// for several threads at once; uses several itself. The same for any number of threads.
@@ -93,16 +93,16 @@ class TsdfVolume {
   std::size_t leafCount() const;
   std::size_t memoryBytes() const;  ///< of the trees
 
-  /// Distance > 0 outside, and the sum of the weights. kUnknown and 0 where it is `least_weight` or less.
+  /// Distance > 0 outside, kUnknown where the weight is `least_weight` or less; the sum of the weights.
   ScalarGrid distance(float least_weight = 0.0f) const;
   ScalarGrid weight() const;
 
   /// Leaves in the order in which they were made: a leaf keeps its number.
   Index3 leafOriginOf(std::size_t leaf) const;
   void copyDistances(std::size_t leaf, float least_weight, std::span<float, ScalarGrid::kLeafSize> out) const;
-  /// The number of calls of integrate() and remove() up to the last that changed a leaf.
+  /// The number of calls of integrate(), remove() and carve() up to the last that changed a leaf.
   std::size_t lastChange(std::size_t leaf) const;
-  std::size_t changes() const;  ///< calls of integrate() and remove()
+  std::size_t changes() const;  ///< calls of these
 
   /// Gives the mesh's vertices the weight around them as support, and their colours when there are any.
   void describeVertices(TriangleMesh& mesh) const;
