@@ -84,13 +84,14 @@ Image<float> weighRows(const Image<float>& depth, RowWeighting weighting, const 
 }
 
 // Incidence of any sensor, from points.
-float cosineAt(const Projection& projection, const Image<float>& depth, float jump, int x, int y) {
+float cosineAt(const Projection& projection, const Image<float>& depth, const DepthEdge& edge, int x, int y) {
   constexpr int k = kNormalRadius;
   if (x < k || y < k || x >= depth.width() - k || y >= depth.height() - k) return kUnknownCosine;
   const float z = depth(x, y);
   const auto [least, most] =
       std::minmax({depth(x - k, y), depth(x + k, y), depth(x, y - k), depth(x, y + k)});
-  if (!(z > 0) || !(least > 0) || most - least > jump * z) return kUnknownCosine;
+  if (!(z > 0) || !(least > 0) || most - least > 2 * k * (edge.relative * z + edge.absolute))
+    return kUnknownCosine;
   const auto point = [&](int px, int py) { return unproject(projection, px, py, depth(px, py)); };
   const Eigen::Vector3d a = point(x + k, y) - point(x - k, y), b = point(x, y + k) - point(x, y - k);
   const Eigen::Vector3d normal = a.cross(b);
@@ -110,8 +111,7 @@ Image<float> measurementWeights(const View& view, const std::optional<NoiseLaw>&
   Image<float> weights =
       weighRows(depth, weighting, options.incidence ? pinhole : nullptr, edge, options.silhouette);
   if (options.incidence && pinhole == nullptr) {
-    const float jump = 2 * kNormalRadius * (edge.relative + edge.absolute);
-    multiply(weights, [&](int x, int y) { return cosineAt(view.projection, depth, jump, x, y); });
+    multiply(weights, [&](int x, int y) { return cosineAt(view.projection, depth, edge, x, y); });
   }
   if (options.confidence && !view.map.confidence.empty()) {
     multiply(weights, [&](int x, int y) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A TSDF volume on disk: float grids that other tools read, with what is needed to go on in their metadata.
 // Numbers of the half storage are floats exactly, and come back as they were.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "fusion/tsdf_state.h"
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {
 namespace {

@@ -24,7 +24,7 @@ constexpr double kKeptBytesPerPixel = 13.0;    // depth, ε, incidence, look
 constexpr double kPass = 260 * kMiB;           // sums of the evidence
 constexpr double kBytesPerCell = 160.0;        // when the surface is made
 constexpr double kBytesPerCellOfEvidence = 45.0;
-constexpr double kBytesPerVoxelOfTsdf = 10.0;
+constexpr double kBytesPerVoxelOfTsdf = 30.0;  // when the rim is made
 // Coarser cells beside the finest ones.
 constexpr double kCellsPerFinest = 1.15;
 // A neighbourhood of views must fit: one and those that judge it.
@@ -49,22 +49,23 @@ Pixels countPixels(const ViewSequence& views, const std::vector<int>& reduction)
   return pixels;
 }
 
-// Voxels of the leaves that a truncated distance touches. No pixel is too doubtful for it: strays fill leaves
-// of their own, eight or so each, until all of the domain is full.
-double expectedTsdfVoxels(const Survey& survey, double voxel, double pixels, double truncation) {
+// Voxels of the leaves that a truncated distance touches. Where doubtful pixels are believed, too, strays
+// fill leaves of their own, eight or so each, until all of the domain is full.
+double expectedTsdfVoxels(const Survey& survey, double voxel, double pixels, const TsdfMethod& method) {
   constexpr double kLeafSide = 8, kLeavesPerStray = 8;
+  const double truncation =
+      method.truncation > 0 ? method.truncation : std::max(4 * voxel, 3 * survey.noise_scale);
   const double volume = survey.domain.volume() / std::pow(voxel, 3);
   const double surface = survey.area * (2 * truncation + kLeafSide * voxel) / std::pow(voxel, 3);
   const double leaves = volume / std::pow(kLeafSide, 3);
-  const double touched = leaves * -std::expm1(-kLeavesPerStray * survey.stray_share * pixels / leaves);
+  const double strays = method.weights.confidence ? 0.0 : survey.stray_share * pixels;
+  const double touched = leaves * -std::expm1(-kLeavesPerStray * strays / leaves);
   return std::min(surface + touched * std::pow(kLeafSide, 3), volume);
 }
 
 // Finest cells: the ridge of the support, two voxels around, and what rounding to pairs of voxels costs.
 double expectedCells(const Survey& survey, double voxel, double pixels, const ReconstructOptions& options) {
-  if (options.method == Method::Tsdf)
-    return expectedTsdfVoxels(survey, voxel, pixels,
-                              options.tsdf.truncation > 0 ? options.tsdf.truncation : 4 * voxel);
+  if (options.method == Method::Tsdf) return expectedTsdfVoxels(survey, voxel, pixels, options.tsdf);
   constexpr double kRidge = 0.83, kSupported = 1.6, kAround = 5.5;
   const double half_width = voxel < survey.noise_scale ? kRidge * survey.noise_scale : kSupported * voxel;
   const double layers = 2 * half_width / voxel + kAround;

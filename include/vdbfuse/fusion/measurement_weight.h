@@ -21,8 +21,8 @@ struct WeightOptions {
   /// tangent.
   bool incidence = true;
   /// Rises from the edges of the depth map inwards over four pixels: where sensors mix depths, and where the
-  /// band behind a surface would come out at its other side. A pixel that agrees with none of
-  /// the measured ones beside it counts nothing.
+  /// band behind a surface would come out at its other side. A pixel that agrees with none of the
+  /// measured ones beside it counts nothing.
   bool silhouette = true;
 };
 

@@ -74,10 +74,10 @@ struct ReconstructOptions {
   // The surface.
   double smoothing_voxels = 2.0;  ///< FieldOptions::smoothing_voxels
   CompletionOptions completion;   ///< of what nobody measured
-  double trim = 0.0;              ///< cut away what fewer views than this agree on; 0: keep all
-  double min_component = 0.0;     ///< least diagonal of a component's bounding box, length; 0: keep all
-  std::size_t simplify = 0;       ///< triangles to be left, about; 0: all
-  TsdfMethod tsdf;                ///< of Method::Tsdf
+  double trim = 0.0;  ///< cut away what fewer views than this agree on (TSDF: what weighs less); 0: all
+  double min_component = 0.0;  ///< least diagonal of a component's bounding box, length; 0: keep all
+  std::size_t simplify = 0;    ///< triangles to be left, about; 0: all
+  TsdfMethod tsdf;             ///< of Method::Tsdf
 
   /// Bytes that may be used; 0: 80 % of what is free. Views that do not fit lie in a file ($TMPDIR or
   /// /var/tmp) and pass by; where the cells do not fit, the reconstruction is refused before it begins.
