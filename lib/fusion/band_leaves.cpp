@@ -2,32 +2,16 @@
 #include "fusion/band_leaves.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "fusion/leaf_keys.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/geometry/distortion.h"
 #include "vdbfuse/geometry/projection.h"
 
 namespace vdbfuse {
 namespace {
-
-// Leaves as numbers in the order of their origins, counted from a grid's origin.
-constexpr int kBits = 21;
-constexpr std::int64_t kOffset = std::int64_t{1} << (kBits - 1);
-
-std::uint64_t keyOf(std::int64_t x, std::int64_t y, std::int64_t z) {
-  return static_cast<std::uint64_t>((((x + kOffset) << kBits) | (y + kOffset)) << kBits | (z + kOffset));
-}
-
-Index3 originOf(std::uint64_t key) {
-  Index3 result;
-  for (int a = 2; a >= 0; --a, key >>= kBits)
-    result[a] = ScalarGrid::kLeafSide *
-                static_cast<int>(static_cast<std::int64_t>(key & ((1u << kBits) - 1)) - kOffset);
-  return result;
-}
 
 // Pixels x0 … x1 − 1, y0 … y1 − 1.
 struct PixelRect {
@@ -83,15 +67,11 @@ class TileLeaves {
     if (x < rect.x1 && y < rect.y1) visit({x, y, rect.x1, rect.y1});
   }
 
-  std::vector<std::uint64_t> take() {
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-    return std::move(found_);
-  }
+  std::vector<std::uint64_t> take() { return found_.take(); }
 
  private:
   static constexpr double kRelief = 2;
-  static constexpr double kFarthest = ScalarGrid::kLeafSide * static_cast<double>(kOffset - 1);
+  static constexpr double kFarthest = ScalarGrid::kLeafSide * static_cast<double>(kLeafKeyReach);
 
   // Points along the ray of a pixel are start + depth·step (geometry/projection.h).
   struct Ray {
@@ -145,14 +125,7 @@ class TileLeaves {
     if ((to - from).cast<double>().array().operator+(1).prod() > kMostLeavesOfAPixel) return;
     for (int x = from.x(); x <= to.x(); ++x)
       for (int y = from.y(); y <= to.y(); ++y)
-        for (int z = from.z(); z <= to.z(); ++z) add(keyOf(x, y, z));
-  }
-
-  void add(std::uint64_t key) {
-    std::uint64_t& recent = recent_[key * 0x9e3779b97f4a7c15ULL >> 54];
-    if (recent == key) return;
-    recent = key;
-    found_.push_back(key);
+        for (int z = from.z(); z <= to.z(); ++z) found_.add(leafKey(x, y, z));
   }
 
   const ViewHeader& view_;
@@ -164,8 +137,7 @@ class TileLeaves {
   bool has_straight_rays_ = false;  ///< an undistorted pinhole: steps are linear in the pixel
   Eigen::Vector3d first_step_, step_by_x_, step_by_y_;
   Eigen::Array3d low_ = Eigen::Array3d::Constant(-kFarthest), high_ = Eigen::Array3d::Constant(kFarthest);
-  std::vector<std::uint64_t> found_;
-  std::array<std::uint64_t, 1024> recent_{};  // key 0 is out of reach
+  LeafKeyCollector found_;
 };
 
 // One list out of two halves of a list of lists, all sorted.
@@ -202,7 +174,8 @@ std::vector<Index3> bandLeaves(const ViewHeader& view, const Image<float>& depth
   });
   std::vector<Index3> origins;
   if (parts.empty()) return origins;
-  for (const std::uint64_t key : merged(parts, 0, parts.size())) origins.push_back(originOf(key));
+  for (const std::uint64_t key : merged(parts, 0, parts.size()))
+    origins.emplace_back(ScalarGrid::kLeafSide * placeOfLeaf(key));
   return origins;
 }
 

@@ -4,8 +4,8 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <array>
 
+#include "fusion/leaf_keys.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/volume/leaf_index.h"
 
@@ -19,21 +19,14 @@ class LeafKeys {
       : base_(leafOrigin(frame.toIndex(domain.min()).array().floor().cast<int>().matrix())) {}
 
   std::uint64_t key(const Index3& origin) const {
-    std::uint64_t result = 0;
-    for (int a = 0; a < 3; ++a)
-      result = result << kBits | static_cast<std::uint64_t>((origin[a] - base_[a]) / kSide + kOffset);
-    return result;
+    const Index3 place = (origin - base_) / kSide;
+    return leafKey(place.x(), place.y(), place.z());
   }
-  Index3 origin(std::uint64_t key) const {
-    Index3 result;
-    for (int a = 2; a >= 0; --a, key >>= kBits)
-      result[a] = base_[a] + kSide * (static_cast<int>(key & ((1u << kBits) - 1)) - kOffset);
-    return result;
-  }
+  Index3 origin(std::uint64_t key) const { return base_ + kSide * placeOfLeaf(key); }
 
  private:
   // A domain is at most 2¹⁷ leaves long (kMaxOctreeSide); as much again on either side is room for the reach.
-  static constexpr int kSide = ScalarGrid::kLeafSide, kBits = 21, kOffset = 1 << 19;
+  static constexpr int kSide = ScalarGrid::kLeafSide;
   Index3 base_;
 };
 
@@ -59,31 +52,19 @@ class LeafCollector {
     const Index3 high = leafOrigin((index.array() + reach).ceil().cast<int>().matrix());
     for (int i = low.x(); i <= high.x(); i += 8) {
       for (int j = low.y(); j <= high.y(); j += 8) {
-        for (int k = low.z(); k <= high.z(); k += 8) add(keys_.key({i, j, k}));
+        for (int k = low.z(); k <= high.z(); k += 8) found_.add(keys_.key({i, j, k}));
       }
     }
   }
-  std::vector<std::uint64_t> take() {
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-    return std::move(found_);
-  }
+  std::vector<std::uint64_t> take() { return found_.take(); }
 
  private:
-  void add(std::uint64_t key) {
-    std::uint64_t& recent = recent_[key * 0x9e3779b97f4a7c15ULL >> 54];
-    if (recent == key) return;
-    recent = key;
-    found_.push_back(key);
-  }
-
   const PreparedView& prepared_;
   const GridFrame& frame_;
   const Box& domain_;
   const TouchOptions& options_;
   const LeafKeys& keys_;
-  std::vector<std::uint64_t> found_;
-  std::array<std::uint64_t, 1024> recent_{};  // no leaf has key 0
+  LeafKeyCollector found_;
 };
 
 std::vector<std::uint64_t> touchedByView(const PreparedView& prepared, const GridFrame& frame,
