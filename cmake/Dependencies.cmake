@@ -25,6 +25,11 @@ find_package(meshoptimizer CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET GLOBAL spng)
 find_package(libjpeg-turbo CONFIG REQUIRED)
+find_package(TIFF REQUIRED)
+find_package(OpenEXR CONFIG REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(pugixml CONFIG REQUIRED)
+pkg_check_modules(LIBZIP REQUIRED IMPORTED_TARGET GLOBAL libzip)
 
 if(VDBFUSE_WITH_PCL)
   # find_package(PCL) drags in VTK and fails beside OpenVDB; the pkg-config targets work.

@@ -10,11 +10,12 @@ set(VDBFUSE_LAYERS
     2:sensor      # depth map, view, lazy sequence, noise models
     2:mesh        # triangles, topology, closest point, winding number
     2:volume      # OpenVDB grids, traversal, files
-    3:io          # one pair of files a format
+    3:io          # files: images, arrays, meshes, text
     3:octree      # cells, grading, graph, labels
     3:evaluation  # accuracy, completeness, topology of a mesh against the truth
     3:synth       # synthetic scanner
     3:pcl         # bridge to the Point Cloud Library, a library of its own
+    4:formats     # data sets of depth maps, one pair of files a format
     4:fusion      # reliability, rho, sigma, TSDF
     4:surface     # field, mesh extraction
     4:report      # pictures, slices

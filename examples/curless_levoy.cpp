@@ -10,12 +10,12 @@
 #include <exception>
 #include <limits>
 
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/fusion/calibrate.h"
 #include "vdbfuse/fusion/evidence.h"
 #include "vdbfuse/fusion/likelihood.h"
 #include "vdbfuse/fusion/tsdf.h"
-#include "vdbfuse/io/depth_set.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/surface/extract.h"
 #include "vdbfuse/synth/synthetic_scan.h"

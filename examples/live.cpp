@@ -12,7 +12,7 @@
 #include <exception>
 #include <thread>
 
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/mesh/topology.h"
 #include "vdbfuse/pipeline/integrator.h"

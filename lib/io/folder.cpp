@@ -34,6 +34,16 @@ std::filesystem::path findPicture(const std::filesystem::path& folder, const std
   return {};
 }
 
+std::filesystem::path pathInside(const std::filesystem::path& folder, const std::string& relative,
+                                 const std::filesystem::path& named_in, const std::string& place) {
+  const std::filesystem::path path = std::filesystem::path(relative).lexically_normal();
+  const bool holds_zero = relative.find('\0') != std::string::npos;
+  if (relative.empty() || path.is_absolute() || *path.begin() == ".." || holds_zero)
+    throw IoError(named_in, place, "a path inside the data set",
+                  "'" + relative.substr(0, std::min(relative.find('\0'), std::size_t{100})) + "'");
+  return folder / path;
+}
+
 std::string counted(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }

@@ -17,6 +17,11 @@ std::vector<std::string> filesEndingWith(const std::filesystem::path& folder, st
 /// The first of `folder`/`stem` + one of .png, .jpg, .jpeg that exists; empty when none does.
 std::filesystem::path findPicture(const std::filesystem::path& folder, const std::string& stem);
 
+/// `folder`/`relative`, for a path that a file of the data set names at `place`. Throws IoError when it is
+/// absolute or leads out of `folder`: a data set must not make us open files that lie elsewhere.
+std::filesystem::path pathInside(const std::filesystem::path& folder, const std::string& relative,
+                                 const std::filesystem::path& named_in, const std::string& place);
+
 /// "1 depth map", "3 depth maps": for messages.
 std::string counted(std::size_t count, const std::string& noun);
 

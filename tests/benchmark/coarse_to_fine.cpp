@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "pipeline/decided_cells.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/pipeline/judge_scan.h"
 
 int main(int argc, char** argv) {

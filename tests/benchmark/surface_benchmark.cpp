@@ -15,9 +15,9 @@
 
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/evaluation/evaluate.h"
+#include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/io/mesh_file.h"
-#include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/mesh/closest_point.h"
 #include "vdbfuse/mesh/sampling.h"
 #include "vdbfuse/pipeline/reconstruct.h"

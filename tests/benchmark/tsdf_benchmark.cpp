@@ -14,9 +14,9 @@
 
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/base/random.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/fusion/measurement_weight.h"
 #include "vdbfuse/fusion/tsdf.h"
-#include "vdbfuse/io/depth_set.h"
 #include "vdbfuse/mesh/closest_point.h"
 #include "vdbfuse/mesh/topology.h"
 #include "vdbfuse/surface/extract.h"

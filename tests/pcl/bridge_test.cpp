@@ -8,7 +8,7 @@
 #include "io/temporary_folder.h"
 #include "mesh/shapes.h"
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 
 namespace vdbfuse {
 namespace {

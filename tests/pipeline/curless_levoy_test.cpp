@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "io/shared_data.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/fusion/evidence.h"
 #include "vdbfuse/fusion/tsdf.h"
-#include "vdbfuse/io/depth_set.h"
 #include "vdbfuse/surface/extract.h"
 
 namespace vdbfuse {

@@ -7,7 +7,7 @@
 #include "io/shared_data.h"
 #include "pipeline/scan_scenes.h"
 #include "vdbfuse/base/random.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/pipeline/judge_scan.h"
 
 namespace vdbfuse {

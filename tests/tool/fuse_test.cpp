@@ -6,9 +6,9 @@
 
 #include "fusion/scenes.h"
 #include "tool/run_tool.h"
+#include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/io/mesh_file.h"
-#include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/mesh/topology.h"
 #include "vdbfuse/volume/scalar_grid.h"

@@ -7,8 +7,8 @@
 
 #include "io/temporary_folder.h"
 #include "tool/run_tool.h"
-#include "vdbfuse/io/depth_set.h"
-#include "vdbfuse/io/mvsnet.h"
+#include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/mvsnet.h"
 
 namespace vdbfuse {
 namespace {

@@ -7,8 +7,8 @@
 #include "fusion/scenes.h"
 #include "tool/run_tool.h"
 #include "vdbfuse/evaluation/evaluate.h"
+#include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/io/mesh_file.h"
-#include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/io/png.h"
 
 namespace vdbfuse {

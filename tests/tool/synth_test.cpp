@@ -6,7 +6,7 @@
 
 #include "io/temporary_folder.h"
 #include "tool/run_tool.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/mesh/topology.h"

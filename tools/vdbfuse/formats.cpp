@@ -4,7 +4,7 @@
 #include <string>
 
 #include "commands.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 
 namespace vdbfuse::tool {
 namespace {

@@ -11,7 +11,7 @@
 #include "commands.h"
 #include "json_file.h"
 #include "read_options.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/summary.h"
 
 namespace vdbfuse::tool {

@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 
 namespace vdbfuse::tool {
 

@@ -12,7 +12,7 @@
 #include "render_slice.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
-#include "vdbfuse/io/depth_set.h"
+#include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/mesh/closest_point.h"

@@ -12,9 +12,9 @@
 #include "output_folder.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/geometry/look_at.h"
 #include "vdbfuse/io/mesh_file.h"
-#include "vdbfuse/io/mvsnet.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/synth/synthetic_scan.h"
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What writers of data sets have in common.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "vdbfuse/base/progress.h"
+#include "vdbfuse/sensor/view_sequence.h"
+
+namespace vdbfuse {
+
+/// Loads one view after the other. `name` is the view's own where all names of the set can be file names and
+/// differ, else its number in eight digits.
+void forEachView(const ViewSequence& views, const Progress& progress,
+                 const std::function<void(const View& view, const std::string& name)>& write);
+
+/// The names that forEachView() gives.
+std::vector<std::string> fileNames(const ViewSequence& views);
+
+/// The one camera of all views. Throws InvalidArgument when they have several, when it is no pinhole or is
+/// distorted; `format` names what cannot hold it.
+Pinhole commonPinhole(const ViewSequence& views, const std::string& format);
+
+/// The view's camera. Throws InvalidArgument when it is no pinhole or is distorted.
+Pinhole plainPinhole(const ViewHeader& header, const std::string& format);
+
+/// 3×3.
+Eigen::Matrix3d intrinsicMatrix(const Pinhole& camera);
+
+/// Rows of numbers that read back as the same.
+std::string matrixText(const Eigen::MatrixXd& matrix);
+
+/// Shortest text that reads back as the same number.
+std::string exactText(double value);
+
+/// Depth as whole numbers of `scale`, rounded, 0 where it is invalid. Throws InvalidArgument when one is
+/// above 65534 or rounds to 0.
+void writeDepthPng(const std::filesystem::path& path, const View& view, double scale);
+
+/// Does nothing when the view has no picture, or one of a sensor of its own.
+void writeColor(const std::filesystem::path& path, const View& view);
+
+/// Throws IoError.
+void createFolder(const std::filesystem::path& folder);
+
+}  // namespace vdbfuse

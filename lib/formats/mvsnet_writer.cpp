@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <utility>
+
+#include "formats/image_writer.h"
+#include "formats/mvsnet_camera.h"
+#include "io/file_bytes.h"
+#include "vdbfuse/base/errors.h"
+#include "vdbfuse/formats/mvsnet.h"
+#include "vdbfuse/io/pfm.h"
+
+namespace vdbfuse {
+namespace {
+
+// Files are named by numbers of eight digits.
+std::string numberedName(std::size_t index) {
+  std::ostringstream text;
+  text << std::setw(8) << std::setfill('0') << index;
+  return text.str();
+}
+
+Pinhole checkedPinhole(const View& view) {
+  const Pinhole camera = plainPinhole(view, "mvsnet");
+  const std::vector<std::string> problems = validate(view);
+  if (!problems.empty()) throw InvalidArgument("view " + view.name, problems.front());
+  return camera;
+}
+
+// Smallest and largest valid depth; zeros when there is none.
+std::pair<float, float> depthRange(const Image<float>& depth) {
+  float low = 0, high = 0;
+  for (const float d : depth) {
+    if (d == kInvalidDepth) continue;
+    low = low == 0 ? d : std::min(low, d);
+    high = std::max(high, d);
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+MvsnetWriter::MvsnetWriter(std::filesystem::path folder) : folder_(std::move(folder)) {
+  createFolder(folder_ / "cams");
+  createFolder(folder_ / "depth_est");
+}
+
+void MvsnetWriter::add(const View& view) {
+  const Pinhole camera = checkedPinhole(view);
+  const std::string stem = numberedName(count_);
+  const auto [low, high] = depthRange(view.map.depth);
+  const std::string text = mvsnetCameraText(camera, view.world_from_camera, low, high);
+  writePfm(folder_ / "depth_est" / (stem + ".pfm"), view.map.depth);
+  if (!view.map.confidence.empty()) {
+    createFolder(folder_ / "confidence");
+    writePfm(folder_ / "confidence" / (stem + ".pfm"), view.map.confidence);
+  }
+  if (!view.map.color.empty() && !view.color_sensor) {
+    createFolder(folder_ / "images");
+    writeColor(folder_ / "images" / (stem + ".png"), view);
+  }
+  io::writeFileBytes(folder_ / "cams" / (stem + "_cam.txt"), text);
+  ++count_;
+}
+
+}  // namespace vdbfuse

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats/samples.h"
+
+#include <fstream>
+
+#include "formats/tiny_scene.h"
+#include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/sensor/organised_points.h"
+
+namespace vdbfuse::test {
+namespace {
+
+template <const char* format>
+void writeAs(const std::filesystem::path& folder) {
+  writeDepthSet(folder, format, ViewSequence::fromViews(tinyViews()));
+}
+
+#ifdef VDBFUSE_TEST_PCL
+void writePcd(const std::filesystem::path& folder) {
+  for (const View& view : tinyViews()) {
+    std::ofstream file(folder / (view.name + ".pcd"));
+    const Eigen::Quaterniond turn(view.world_from_camera.linear());
+    file.precision(17);
+    file << "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 24\nHEIGHT 18\nVIEWPOINT "
+         << view.world_from_camera.translation().transpose() << " " << turn.w() << " "
+         << turn.vec().transpose() << "\nPOINTS 432\nDATA ascii\n";
+    for (const Eigen::Vector3f& p : pointsOf(view)) file << p.transpose() << "\n";
+  }
+}
+#endif
+
+constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
+
+}  // namespace
+
+const std::vector<Sample>& samples() {
+  static const std::vector<Sample> all = {
+      {"rgbd", "written", writeAs<kRgbd>, ""},
+      {"mvsnet", "written", writeAs<kMvsnet>, ""},
+#ifdef VDBFUSE_TEST_PCL
+      {"pcd", "ascii", writePcd, ""},
+#endif
+  };
+  return all;
+}
+
+}  // namespace vdbfuse::test
