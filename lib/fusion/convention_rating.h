@@ -17,15 +17,18 @@ RigidTransform poseUnder(const RigidTransform& world_from_camera, const RigidTra
 class DepthReader {
  public:
   DepthReader(const Projection& projection, const Convention& convention)
-      : pinhole_(convention.depth == Convention::Depth::Range ? std::get_if<Pinhole>(&projection) : nullptr),
+      : pinhole_(convention.depth != Convention::Depth::AsRead ? std::get_if<Pinhole>(&projection) : nullptr),
+        is_range_(convention.depth == Convention::Depth::Range),
         factor_(convention.depth_factor) {}
   double operator()(int x, int y, double depth) const {
     if (pinhole_ == nullptr) return factor_ * depth;
-    return factor_ * depth / unproject(*pinhole_, x, y, 1.0).norm();
+    const double range_per_z = unproject(*pinhole_, x, y, 1.0).norm();
+    return is_range_ ? factor_ * depth / range_per_z : factor_ * depth * range_per_z;
   }
 
  private:
   const Pinhole* pinhole_;
+  bool is_range_;
   double factor_;
 };
 

@@ -34,6 +34,7 @@ constexpr std::array<PoseName, 8> kPoses = {{
 }};
 constexpr const char* kFlipped = "opengl";
 constexpr const char* kRange = "range";
+constexpr const char* kZ = "z";
 constexpr const char* kFactor = "depth*";
 
 // Units and scales that are mistaken for each other: millimetres, centimetres, and the 5000 of the TUM
@@ -89,6 +90,7 @@ bool addWord(const std::string& word, Convention& convention) {
   }
   if (word == kFlipped) return convention.axes = Convention::Axes::Flipped, true;
   if (word == kRange) return convention.depth = Convention::Depth::Range, true;
+  if (word == kZ) return convention.depth = Convention::Depth::Z, true;
   if (!word.starts_with(kFactor)) return false;
   char* end = nullptr;
   convention.depth_factor = std::strtod(word.c_str() + std::string(kFactor).size(), &end);
@@ -103,7 +105,8 @@ std::vector<Convention> candidates() {
         result.push_back({p.pose, axes, Convention::Depth::AsRead, factor});
     }
   }
-  result.push_back({Pose::AsRead, Convention::Axes::AsRead, Convention::Depth::Range, 1.0});
+  for (const auto depth : {Convention::Depth::Range, Convention::Depth::Z})
+    result.push_back({Pose::AsRead, Convention::Axes::AsRead, depth, 1.0});
   return result;
 }
 
@@ -120,6 +123,7 @@ std::string nameOf(const Convention& convention) {
   if (convention.pose != Pose::AsRead) add(kPoses[static_cast<std::size_t>(convention.pose)].name);
   if (convention.axes == Convention::Axes::Flipped) add(kFlipped);
   if (convention.depth == Convention::Depth::Range) add(kRange);
+  if (convention.depth == Convention::Depth::Z) add(kZ);
   if (convention.depth_factor != 1) add(kFactor + factorText(convention.depth_factor));
   return name.empty() ? kPoses[0].name : name;
 }
@@ -142,6 +146,7 @@ std::string describe(const Convention& convention) {
     add("camera axes are those of OpenGL (x right, y up, z backward), not x right, y down, z forward (or the "
         "other way round)");
   if (convention.depth == Convention::Depth::Range) add("depth is the distance along the ray, not z");
+  if (convention.depth == Convention::Depth::Z) add("depth is z, not the distance along the ray");
   if (convention.depth_factor != 1)
     add("depths are " + factorText(convention.depth_factor) + " times what was read");
   return words.empty() ? kPoses[0].words : words;

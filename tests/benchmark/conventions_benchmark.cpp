@@ -31,7 +31,8 @@ constexpr Mistake kMistakes[] = {{"inverse", "inverse"},
                                  {"depth*0.001", "depth*1000"},
                                  {"depth*5", "depth*0.2"},
                                  {"depth*0.2", "depth*5"},
-                                 {"range", ""}};
+                                 {"range", "z"},
+                                 {"z", "range"}};
 
 std::string found(const vdbfuse::ConventionCheck& check) {
   if (!check.agreement) return "cannot tell";

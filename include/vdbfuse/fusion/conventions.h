@@ -33,8 +33,8 @@ struct Convention {
   /// The camera's axes are x right, y up, z backward (OpenGL), where x right, y down, z forward was taken; or
   /// the other way round, which is the same change.
   enum class Axes { AsRead, Flipped } axes = Axes::AsRead;
-  /// Pinholes only: what was taken for z is the distance along the ray.
-  enum class Depth { AsRead, Range } depth = Depth::AsRead;
+  /// Pinholes only: what was taken for z is the distance along the ray, or the other way round.
+  enum class Depth { AsRead, Range, Z } depth = Depth::AsRead;
   /// Depths times this.
   double depth_factor = 1.0;
 
