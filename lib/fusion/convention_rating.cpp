@@ -40,29 +40,42 @@ double sizeOf(const SampledView& sampled) {
   return size.norm();
 }
 
-// What the points of one view find in another.
-struct Tally {
-  double seen = 0, agree = 0, conflict = 0;
+// What one point finds in the other views.
+struct Votes {
+  double agree = 0, conflict = 0;
 };
 
-void compare(const SampledView& from, const RigidTransform& from_pose, const SampledView& to,
-             const RigidTransform& to_pose, const Convention& convention, double tolerance, Tally& tally) {
+// How far a point behind another view's surface speaks against the reading: views that look the same way see
+// the same surfaces, views from opposite sides rightly see none of each other's.
+double weightOfHidden(const SampledView& a, const SampledView& b, const RigidTransform& b_from_a) {
+  constexpr double kAnyDirection = 0.25;
+  const auto looks_all_around = [](const SampledView& v) {
+    return std::holds_alternative<Spherical>(v.view.projection);
+  };
+  if (looks_all_around(a) || looks_all_around(b)) return kAnyDirection;
+  const double cosine = std::max(0.0, b_from_a.linear()(2, 2));
+  return cosine * cosine * cosine * cosine;
+}
+
+// Looks every point of one view up in another.
+void ask(const SampledView& from, const SampledView& to, const RigidTransform& to_from_from,
+         const Convention& convention, double tolerance, std::vector<Votes>& votes) {
   const DepthReader from_depth(from.view.projection, convention), to_depth(to.view.projection, convention);
-  const RigidTransform to_from_from = to_pose.inverse() * from_pose;
   const Image<float>& depth = to.view.map.depth;
-  for (const SampledPixel& p : from.pixels) {
+  const double hidden = weightOfHidden(from, to, to_from_from);
+  for (std::size_t i = 0; i < from.pixels.size(); ++i) {
+    const SampledPixel& p = from.pixels[i];
     const Eigen::Vector3d point =
         to_from_from * unproject(from.view.projection, p.x, p.y, from_depth(p.x, p.y, p.depth));
     const auto seen = project(to.view.projection, point);
-    tally.seen += 1;
     if (!seen || !(std::abs(seen->x) < 1e6 && std::abs(seen->y) < 1e6)) continue;
     const int x = nearestPixel(seen->x), y = nearestPixel(seen->y);
     if (!depth.contains(x, y) || depth(x, y) == kInvalidDepth) continue;
     const double behind = seen->depth - to_depth(x, y, depth(x, y));
     if (std::abs(behind) <= tolerance)
-      tally.agree += 1;
-    else if (behind < 0)
-      tally.conflict += 1;
+      votes[i].agree += 1;
+    else
+      votes[i].conflict += behind < 0 ? 1 : hidden;
   }
 }
 
@@ -95,17 +108,24 @@ double agreementUnder(const std::vector<SampledView>& views, const Convention& c
   std::vector<RigidTransform> poses;
   for (const SampledView& v : views)
     poses.push_back(poseUnder(v.view.world_from_camera, v.stored_from_camera, convention));
-  Tally tally;
+  double consistent = 0, inconsistent = 0, all = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
+    std::vector<Votes> votes(views[i].pixels.size());
     for (std::size_t j = 0; j < views.size(); ++j) {
-      if (i != j)
-        compare(views[i], poses[i], views[j], poses[j], convention, convention.depth_factor * tolerance,
-                tally);
+      if (i == j) continue;
+      ask(views[i], views[j], poses[j].inverse() * poses[i], convention, convention.depth_factor * tolerance,
+          votes);
     }
+    // By majority, so that a wrong depth spoils its own vote and few others.
+    for (const Votes& v : votes) {
+      consistent += v.agree > v.conflict ? 1 : 0;
+      inconsistent += v.agree <= v.conflict && v.conflict > 0 ? 1 : 0;
+    }
+    all += static_cast<double>(votes.size());
   }
   // A handful of points that agree by chance must not look like agreement.
   constexpr double kDoubt = 0.02;
-  return tally.agree / (tally.agree + tally.conflict + kDoubt * tally.seen + 1e-12);
+  return consistent / (consistent + inconsistent + kDoubt * all);
 }
 
 }  // namespace vdbfuse

@@ -110,6 +110,28 @@ std::vector<Convention> candidates() {
   return result;
 }
 
+int changes(const Convention& c) {
+  const int pose = c.pose == Pose::AsRead                                            ? 0
+                   : c.pose < Pose::ScalarFirst && c.pose != Pose::InverseTransposed ? 1
+                                                                                     : 2;
+  return pose + (c.axes != Convention::Axes::AsRead) + (c.depth != Convention::Depth::AsRead) +
+         (c.depth_factor != 1);
+}
+
+// Of those that are nearly as good as the best, the one that changes least: round things agree under several.
+const RatedConvention* plainestOfTheBest(const std::vector<RatedConvention>& rated) {
+  constexpr double kNearly = 0.05;
+  double best = 0;
+  for (const RatedConvention& r : rated) best = std::max(best, r.agreement);
+  const RatedConvention* found = nullptr;
+  for (const RatedConvention& r : rated) {
+    if (r.agreement < best - kNearly) continue;
+    const int more = found == nullptr ? -1 : changes(r.convention) - changes(found->convention);
+    if (more < 0 || (more == 0 && r.agreement > found->agreement)) found = &r;
+  }
+  return found;
+}
+
 bool isClearlyBetter(double candidate, double as_read) {
   constexpr double kShareOfTheMissing = 1.0 / 3;
   return candidate > as_read + kShareOfTheMissing * (1 - as_read);
@@ -204,8 +226,7 @@ ConventionCheck checkConvention(const ViewSequence& views,
       rated[i].agreement = agreementUnder(samples, rated[i].convention, tolerance);
     step.advance(end - begin);
   });
-  const auto best = std::max_element(rated.begin(), rated.end(),
-                                     [](const auto& a, const auto& b) { return a.agreement < b.agreement; });
+  const RatedConvention* best = plainestOfTheBest(rated);
   constexpr double kLeastToTell = 0.2;
   if (best->agreement < kLeastToTell) return check;
   check.agreement = rated.front().agreement;

@@ -70,8 +70,9 @@ struct ConventionOptions {
 /// How well views agree under one reading.
 struct RatedConvention {
   Convention convention;
-  /// Of the points of one view that fall on measured pixels of another and do not lie behind its surface: the
-  /// share that lies on it. Lower where hardly any fall on others.
+  /// Of the points of one view that fall on measured pixels of others: the share that lies on the surfaces of
+  /// more of them than it contradicts (where it floats before a surface; behind one counts the less the more
+  /// the views' directions differ). Lower where hardly any fall on others.
   double agreement = 0;
 };
 
