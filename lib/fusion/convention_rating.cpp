@@ -57,11 +57,24 @@ double weightOfHidden(const SampledView& a, const SampledView& b, const RigidTra
   return cosine * cosine * cosine * cosine;
 }
 
+// How much the depth changes over a pixel: a surface that is seen at a grazing angle lies at no one depth
+// there.
+double slack(const Image<float>& depth, int x, int y) {
+  float low = depth(x, y), high = low;
+  const auto widen = [&](int u, int v) {
+    if (!depth.contains(u, v) || depth(u, v) == kInvalidDepth) return;
+    low = std::min(low, depth(u, v)), high = std::max(high, depth(u, v));
+  };
+  widen(x - 1, y), widen(x + 1, y), widen(x, y - 1), widen(x, y + 1);
+  return 0.5 * (static_cast<double>(high) - low);
+}
+
 // Looks every point of one view up in another.
 void ask(const SampledView& from, const SampledView& to, const RigidTransform& to_from_from,
          const Convention& convention, double tolerance, std::vector<Votes>& votes) {
   const DepthReader from_depth(from.view.projection, convention), to_depth(to.view.projection, convention);
   const Image<float>& depth = to.view.map.depth;
+  constexpr double kMostSlack = 3;
   const double hidden = weightOfHidden(from, to, to_from_from);
   for (std::size_t i = 0; i < from.pixels.size(); ++i) {
     const SampledPixel& p = from.pixels[i];
@@ -72,7 +85,8 @@ void ask(const SampledView& from, const SampledView& to, const RigidTransform& t
     const int x = nearestPixel(seen->x), y = nearestPixel(seen->y);
     if (!depth.contains(x, y) || depth(x, y) == kInvalidDepth) continue;
     const double behind = seen->depth - to_depth(x, y, depth(x, y));
-    if (std::abs(behind) <= tolerance)
+    const double steepness = convention.depth_factor * slack(depth, x, y);
+    if (std::abs(behind) <= tolerance + std::min(steepness, kMostSlack * tolerance))
       votes[i].agree += 1;
     else
       votes[i].conflict += behind < 0 ? 1 : hidden;
@@ -112,9 +126,10 @@ double agreementUnder(const std::vector<SampledView>& views, const Convention& c
   for (std::size_t i = 0; i < views.size(); ++i) {
     std::vector<Votes> votes(views[i].pixels.size());
     for (std::size_t j = 0; j < views.size(); ++j) {
-      if (i == j) continue;
-      ask(views[i], views[j], poses[j].inverse() * poses[i], convention, convention.depth_factor * tolerance,
-          votes);
+      // Sensors in one place agree about any depths: no parallax, no witness.
+      const double length = convention.depth_factor * tolerance;
+      if (i == j || (poses[i].translation() - poses[j].translation()).norm() < length) continue;
+      ask(views[i], views[j], poses[j].inverse() * poses[i], convention, length, votes);
     }
     // By majority, so that a wrong depth spoils its own vote and few others.
     for (const Votes& v : votes) {

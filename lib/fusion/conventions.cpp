@@ -133,8 +133,9 @@ const RatedConvention* plainestOfTheBest(const std::vector<RatedConvention>& rat
 }
 
 bool isClearlyBetter(double candidate, double as_read) {
-  constexpr double kShareOfTheMissing = 1.0 / 3;
-  return candidate > as_read + kShareOfTheMissing * (1 - as_read);
+  constexpr double kShareOfTheMissing = 1.0 / 3, kLeastGain = 0.15, kTimes = 3, kLeast = 0.3;
+  if (candidate < kLeast || candidate < as_read + kLeastGain) return false;
+  return candidate > as_read + kShareOfTheMissing * (1 - as_read) || candidate > kTimes * as_read;
 }
 
 }  // namespace

@@ -43,6 +43,8 @@ TEST(Info, TellsWhatIsInADataSet) {
   EXPECT_EQ(run.out,
             "format      mvsnet\n"
             "views       2, 8x6 pixels\n"
+            "stored      32-bit float PFM, z; invalid: 0, negative, not finite\n"
+            "poses       4x4 camera_from_world ('extrinsic'), x right, y down, z forward\n"
             "coverage    87.5 % of the pixels have a depth\n"
             "depth       2 to 2, median 2 (smallest 2, largest 2)\n"
             "confidence  none\n"

@@ -79,8 +79,8 @@ struct RatedConvention {
 struct ConventionCheck {
   /// As the views were read; nothing when they do not overlap enough under any reading to tell.
   std::optional<double> agreement;
-  /// The reading that agrees clearly better, if there is one: by a third of what is missing to all, at the
-  /// least.
+  /// The reading that agrees clearly better, if there is one: by a third of what is missing to all, or three
+  /// times as well. Of readings that agree nearly alike, the one that changes least.
   std::optional<RatedConvention> better;
 };
 
