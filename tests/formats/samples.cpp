@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/numpy_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/organised_points.h"
@@ -30,6 +31,7 @@ void writePcd(const std::filesystem::path& folder) {
 #endif
 
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
+constexpr char kNumpy[] = "numpy";
 
 }  // namespace
 
@@ -40,6 +42,11 @@ const std::vector<Sample>& samples() {
 #ifdef VDBFUSE_TEST_PCL
       {"pcd", "ascii", writePcd, ""},
 #endif
+      {"numpy", "written", writeAs<kNumpy>, ""},
+      {"numpy", "vggt", writeVggtSample, "predictions.npz"},
+      {"numpy", "cut3r", writeCut3rSample, ""},
+      {"numpy", "frame_files", writeFrameFilesSample, ""},
+      {"numpy", "array_files", writeArrayFilesSample, ""},
   };
   return all;
 }
