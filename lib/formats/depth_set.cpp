@@ -9,6 +9,7 @@
 #include "formats/numpy.h"
 #include "formats/pcd.h"
 #include "formats/rgbd_folder.h"
+#include "formats/transforms.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -74,6 +75,7 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
       mvsnetFormat(),
       pcdFormat(),
       numpyFormat(),
+      transformsFormat(),
   };
   return formats;
 }

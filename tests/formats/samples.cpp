@@ -5,6 +5,7 @@
 
 #include "formats/numpy_sample.h"
 #include "formats/tiny_scene.h"
+#include "formats/transforms_sample.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/organised_points.h"
 
@@ -31,7 +32,7 @@ void writePcd(const std::filesystem::path& folder) {
 #endif
 
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
-constexpr char kNumpy[] = "numpy";
+constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms";
 
 }  // namespace
 
@@ -47,6 +48,9 @@ const std::vector<Sample>& samples() {
       {"numpy", "cut3r", writeCut3rSample, ""},
       {"numpy", "frame_files", writeFrameFilesSample, ""},
       {"numpy", "array_files", writeArrayFilesSample, ""},
+      {"transforms", "written", writeAs<kTransforms>, ""},
+      {"transforms", "instant_ngp", writeInstantNgpSample, ""},
+      {"transforms", "nerfstudio", writeNerfstudioSample, "transforms.json"},
   };
   return all;
 }
