@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/colmap.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/numpy.h"
@@ -76,6 +77,7 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
       pcdFormat(),
       numpyFormat(),
       transformsFormat(),
+      colmapFormat(),
   };
   return formats;
 }

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/colmap_sample.h"
 #include "formats/numpy_sample.h"
 #include "formats/tiny_scene.h"
 #include "formats/transforms_sample.h"
@@ -32,7 +33,7 @@ void writePcd(const std::filesystem::path& folder) {
 #endif
 
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
-constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms";
+constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms", kColmap[] = "colmap";
 
 }  // namespace
 
@@ -51,6 +52,9 @@ const std::vector<Sample>& samples() {
       {"transforms", "written", writeAs<kTransforms>, ""},
       {"transforms", "instant_ngp", writeInstantNgpSample, ""},
       {"transforms", "nerfstudio", writeNerfstudioSample, "transforms.json"},
+      {"colmap", "written", writeAs<kColmap>, ""},
+      {"colmap", "text", writeColmapTextSample, ""},
+      {"colmap", "rig", writeColmapRigSample, ""},
   };
   return all;
 }
