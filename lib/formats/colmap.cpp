@@ -26,9 +26,7 @@ fs::path depthFolder(const fs::path& path) { return path / "stereo/depth_maps"; 
 
 bool isPicture(const fs::path& path) {
   constexpr std::array kKnown = {".png", ".jpg", ".jpeg", ".JPG", ".JPEG"};
-  std::error_code error;
-  return std::find(kKnown.begin(), kKnown.end(), path.extension().string()) != kKnown.end() &&
-         fs::is_regular_file(path, error);
+  return std::find(kKnown.begin(), kKnown.end(), path.extension().string()) != kKnown.end() && isFile(path);
 }
 
 struct Counts {
@@ -41,8 +39,7 @@ fs::path depthMapOf(const fs::path& path, const ColmapModel& model, const Colmap
   for (const char* kind : {".geometric.bin", ".photometric.bin"}) {
     fs::path file = pathInside(depthFolder(path), image.name + kind, model.images_file,
                                "image " + std::to_string(image.id));
-    std::error_code error;
-    if (!fs::is_regular_file(file, error)) continue;
+    if (!isFile(file)) continue;
     counts.photometric += kind == std::string(".photometric.bin") ? 1 : 0;
     return file;
   }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "io/file_bytes.h"
+#include "io/folder.h"
 #include "io/text_cursor.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
@@ -146,11 +147,8 @@ class BinaryFields : public ColmapFields {
 }  // namespace
 
 std::unique_ptr<ColmapFields> openColmapFile(const fs::path& folder, const std::string& stem) {
-  std::error_code error;
-  if (fs::is_regular_file(folder / (stem + ".bin"), error))
-    return std::make_unique<BinaryFields>(folder / (stem + ".bin"));
-  if (fs::is_regular_file(folder / (stem + ".txt"), error))
-    return std::make_unique<TextFields>(folder / (stem + ".txt"));
+  if (isFile(folder / (stem + ".bin"))) return std::make_unique<BinaryFields>(folder / (stem + ".bin"));
+  if (isFile(folder / (stem + ".txt"))) return std::make_unique<TextFields>(folder / (stem + ".txt"));
   return nullptr;
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "formats/colmap_fields.h"
+#include "io/folder.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
 
@@ -143,10 +144,8 @@ void takeFrames(ColmapModel& model, const std::map<std::uint64_t, RigidTransform
 }  // namespace
 
 bool hasColmapModel(const fs::path& folder) {
-  std::error_code error;
   const auto has = [&](const char* stem) {
-    return fs::is_regular_file(folder / (std::string(stem) + ".bin"), error) ||
-           fs::is_regular_file(folder / (std::string(stem) + ".txt"), error);
+    return isFile(folder / (std::string(stem) + ".bin")) || isFile(folder / (std::string(stem) + ".txt"));
   };
   return has("cameras") && has("images");
 }

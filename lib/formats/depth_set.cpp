@@ -8,6 +8,7 @@
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/numpy.h"
+#include "formats/open3d.h"
 #include "formats/pcd.h"
 #include "formats/rgbd_folder.h"
 #include "formats/transforms.h"
@@ -78,6 +79,7 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
       numpyFormat(),
       transformsFormat(),
       colmapFormat(),
+      open3dFormat(),
   };
   return formats;
 }

@@ -61,7 +61,7 @@ void addOwnFiles(NumpyLayout& layout, const std::vector<fs::path>& folders, cons
   for (const fs::path& folder : folders) {
     for (const char* extension : {".npy", ".npz"}) {
       fs::path file = folder / (name + extension);
-      if (fs::is_regular_file(file)) files.push_back({std::move(file), folder.filename().string()});
+      if (isFile(file)) files.push_back({std::move(file), folder.filename().string()});
     }
     if (picture.empty() && means(folder.filename().string(), ArrayRole::Color))
       picture = findPicture(folder, name);

@@ -109,8 +109,7 @@ fs::path pictureOf(const Context& context, const JsonField& frame) {
   if (!path.has_extension()) return findPicture(path.parent_path(), path.filename().string());
   constexpr std::array kKnown = {".png", ".jpg", ".jpeg", ".JPG", ".JPEG"};
   const bool is_known = std::find(kKnown.begin(), kKnown.end(), path.extension().string()) != kKnown.end();
-  std::error_code error;
-  return is_known && fs::is_regular_file(path, error) ? path : fs::path();
+  return is_known && isFile(path) ? path : fs::path();
 }
 
 void addFrame(std::vector<Frame>& frames, Context& context, const FrameFields& fields) {
@@ -121,7 +120,7 @@ void addFrame(std::vector<Frame>& frames, Context& context, const FrameFields& f
   }
   Frame frame;
   frame.depth = pathInside(context.folder, depth->text(), context.file, depth->place());
-  if (!fs::is_regular_file(frame.depth))
+  if (!isFile(frame.depth))
     throw IoError(frame.depth, "", "the depth map of " + fields.frame.place(), "nothing of that name");
   frame.color = pictureOf(context, fields.frame);
   frame.header.name = (frame.color.empty() ? frame.depth : frame.color).stem().string();
@@ -163,7 +162,7 @@ void addNotes(DepthSet& set, const Context& context, const JsonField& root) {
 fs::path fileIn(const fs::path& path) {
   if (!fs::is_directory(path)) return path;
   for (const char* name : {"transforms.json", "transforms_train.json"}) {
-    if (fs::is_regular_file(path / name)) return path / name;
+    if (isFile(path / name)) return path / name;
   }
   return {};
 }

@@ -32,8 +32,15 @@ void writePcd(const std::filesystem::path& folder) {
 }
 #endif
 
+// Two cameras, so that the trajectory is JSON.
+void writeOpen3dJson(const std::filesystem::path& folder) {
+  std::vector<View> views = tinyViews();
+  std::get<Pinhole>(views[1].projection).cx += 1e-9;
+  writeDepthSet(folder, "open3d", ViewSequence::fromViews(views));
+}
+
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
-constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms", kColmap[] = "colmap";
+constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms", kColmap[] = "colmap", kOpen3d[] = "open3d";
 
 }  // namespace
 
@@ -55,6 +62,8 @@ const std::vector<Sample>& samples() {
       {"colmap", "written", writeAs<kColmap>, ""},
       {"colmap", "text", writeColmapTextSample, ""},
       {"colmap", "rig", writeColmapRigSample, ""},
+      {"open3d", "log", writeAs<kOpen3d>, ""},
+      {"open3d", "json", writeOpen3dJson, ""},
   };
   return all;
 }
