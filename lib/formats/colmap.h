@@ -11,6 +11,9 @@
 //                                               extension, and may have folders
 //   stereo/depth_maps/NAME.photometric.bin      in its place, where that is missing
 //   images/NAME                                 optional
+//
+// A pixel's depth is that of its centre, at .5 like everything that the cameras were calibrated with.
+// COLMAP's stereo_fusion takes it at the pixel's corner: its points lie half a pixel off ours.
 #pragma once
 
 #include <filesystem>
