@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 
 #include "vdbfuse/base/errors.h"
@@ -66,6 +67,37 @@ Pinhole fitPinhole(const PointImage& points) {
     throw InvalidArgument("points", "expected points of a pinhole camera, found them " +
                                         std::to_string(error_px) + " pixels off the best one");
   return camera;
+}
+
+Spherical fitSpherical(const PointImage& points) {
+  // Azimuths are taken from column to column, so that they run on over a full turn.
+  LineFit azimuths, elevations;
+  double last_azimuth = 0;
+  std::size_t seen = 0;
+  for (int x = 0; x < points.width(); ++x) {
+    for (int y = 0; y < points.height(); ++y) {
+      const Eigen::Vector3d p = points(x, y).cast<double>();
+      const double level = std::hypot(p.x(), p.z());
+      if (!p.allFinite() || !(level > 0)) continue;
+      const double azimuth = std::atan2(p.x(), p.z());
+      last_azimuth =
+          seen == 0 ? azimuth : last_azimuth + std::remainder(azimuth - last_azimuth, 2 * std::numbers::pi);
+      azimuths.add(x, last_azimuth);
+      elevations.add(y, std::atan2(p.y(), level));
+      ++seen;
+    }
+  }
+  if (seen < kFewestPoints)
+    throw InvalidArgument("points", "expected at least 16 points, found " + std::to_string(seen));
+  const Spherical scanner{points.width(),   points.height(),     azimuths.center(),
+                          azimuths.focal(), elevations.center(), elevations.focal()};
+  const double pixel = std::min(std::abs(scanner.azimuth_step), std::abs(scanner.elevation_step));
+  const double error_px =
+      std::sqrt(azimuths.meanSquareError() + elevations.meanSquareError()) / std::max(pixel, 1e-12);
+  if (!validate(Projection(scanner)).empty() || !(error_px <= kLargestError_px))
+    throw InvalidArgument("points", "expected points of a turning scanner, found them " +
+                                        std::to_string(error_px) + " pixels off the best one");
+  return scanner;
 }
 
 View viewFromPoints(const PointImage& points, const Projection& projection,

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/camera_samples.h"
 #include "formats/colmap_sample.h"
 #include "formats/numpy_sample.h"
 #include "formats/tiny_scene.h"
@@ -39,14 +40,19 @@ void writeOpen3dJson(const std::filesystem::path& folder) {
   writeDepthSet(folder, "open3d", ViewSequence::fromViews(views));
 }
 
-constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
 constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms", kColmap[] = "colmap", kOpen3d[] = "open3d";
+constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet", kTum[] = "tum";
 
 }  // namespace
 
 const std::vector<Sample>& samples() {
   static const std::vector<Sample> all = {
       {"rgbd", "written", writeAs<kRgbd>, ""},
+      {"tum", "written", writeAs<kTum>, ""},
+      {"tum", "icl_nuim", writeIclNuim, ""},
+      {"scannet", "exported", writeScannet, ""},
+      {"arkit", "polycam", writePolycam, ""},
+      {"arkit", "scanner_app", writeScannerApp, ""},
       {"mvsnet", "written", writeAs<kMvsnet>, ""},
 #ifdef VDBFUSE_TEST_PCL
       {"pcd", "ascii", writePcd, ""},

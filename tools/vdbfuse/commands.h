@@ -13,6 +13,7 @@ namespace vdbfuse::tool {
 using Action = std::function<void()>;
 
 void addFormats(CLI::App& app, Action& action);
+void addConvert(CLI::App& app, Action& action);
 void addInfo(CLI::App& app, Action& action);
 void addFuse(CLI::App& app, Action& action);
 void addJudge(CLI::App& app, Action& action);

@@ -11,7 +11,9 @@
 #include "commands.h"
 #include "json_file.h"
 #include "read_options.h"
+#include "vdbfuse/base/errors.h"
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/fusion/conventions.h"
 #include "vdbfuse/sensor/summary.h"
 
 namespace vdbfuse::tool {
@@ -21,7 +23,7 @@ struct InfoOptions {
   std::filesystem::path input;
   std::filesystem::path json;
   bool overwrite = false;
-  ReadOptions read;
+  ReadArguments read;
 };
 
 std::string number(double value) {
@@ -56,15 +58,20 @@ std::string text(const Box& box) {
   return point(box.min()) + " to " + point(box.max());
 }
 
-void print(const DepthSet& set, const ViewsSummary& summary) {
+void print(const DepthSet& set, const ViewsSummary& summary, const ConventionCheck& check) {
   std::printf("format      %s\n", set.format.c_str());
   std::printf("views       %zu, %s pixels\n", set.views.size(), sizesOf(set.views).c_str());
+  std::printf("stored      %s\n", depthText(set.reading).c_str());
+  std::printf("poses       %s\n", set.reading.pose.c_str());
   std::printf("coverage    %.1f %% of the pixels have a depth\n", 100.0 * summary.coverage());
   std::printf("depth       %s\n", text(summary.depth).c_str());
   std::printf("confidence  %s\n", text(summary.confidence).c_str());
   std::printf("colour      %zu views\n", summary.views_with_color);
   std::printf("points      %s\n", text(summary.points).c_str());
   std::printf("cameras     %s\n", text(summary.cameras).c_str());
+  if (check.agreement)
+    std::printf("agreement   %.0f %% of the points lie where other views see a surface\n",
+                100 * *check.agreement);
   for (const std::string& note : set.notes) std::printf("note        %s\n", note.c_str());
 }
 
@@ -84,19 +91,33 @@ Json jsonOf(const Box& box) {
 }
 
 Json jsonOf(const InfoOptions& options) {
-  Json json;
+  Json json = jsonOf(options.read);
   json["input"] = options.input.string();
-  json["format"] = options.read.format.empty() ? Json(nullptr) : Json(options.read.format);
-  json["depth_scale"] = options.read.depth_scale ? Json(*options.read.depth_scale) : Json(nullptr);
-  json["depth_kind"] = options.read.depth_kind ? Json(nameOf(*options.read.depth_kind)) : Json(nullptr);
-  json["baseline"] = options.read.baseline ? Json(*options.read.baseline) : Json(nullptr);
-  json["masks"] = options.read.masks.empty() ? Json(nullptr) : Json(options.read.masks.string());
-  json["min_depth"] = options.read.min_depth;
-  json["max_depth"] = std::isfinite(options.read.max_depth) ? Json(options.read.max_depth) : Json(nullptr);
   return json;
 }
 
-Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary& summary) {
+Json jsonOf(const DepthReading& reading) {
+  return {{"stored", reading.stored},
+          {"kind", reading.kind ? Json(nameOf(*reading.kind)) : Json("points")},
+          {"scale", reading.scale},
+          {"invalid", reading.invalid},
+          {"pose", reading.pose}};
+}
+
+Json jsonOf(const ConventionCheck& check) {
+  Json json;
+  json["agreement"] = check.agreement ? Json(*check.agreement) : Json(nullptr);
+  json["better"] = nullptr;
+  if (check.better) {
+    json["better"] = {{"convention", nameOf(check.better->convention)},
+                      {"meaning", describe(check.better->convention)},
+                      {"agreement", check.better->agreement}};
+  }
+  return json;
+}
+
+Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary& summary,
+            const ConventionCheck& check) {
   Json json = tool::jsonOf("info");
   json["options"] = jsonOf(options);
   const Projection& first = set.views.header(0).projection;
@@ -104,6 +125,8 @@ Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary&
                    {"width", imageWidth(first)},
                    {"height", imageHeight(first)},
                    {"format", set.format}};
+  json["reading"] = jsonOf(set.reading);
+  json["conventions"] = jsonOf(check);
   json["coverage"] = summary.coverage();
   json["depth"] = jsonOf(summary.depth);
   json["confidence"] = jsonOf(summary.confidence);
@@ -115,12 +138,27 @@ Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary&
   return json;
 }
 
+// Most bad fusions come from poses or depths that mean something else.
+void warn(const ConventionCheck& check) {
+  if (!check.better) return;
+  std::fprintf(
+      stderr,
+      "warning: the views disagree with each other (%.0f %% of the points agree). %.0f %% would, if %s.\n"
+      "         Try --fix-convention %s\n",
+      100 * *check.agreement, 100 * check.better->agreement, describe(check.better->convention).c_str(),
+      nameOf(check.better->convention).c_str());
+}
+
 void run(const InfoOptions& options) {
   if (!options.json.empty() && !options.overwrite) refuseExisting(options.json);
-  const DepthSet set = readDepthSet(options.input, options.read);
+  const DepthSet set = readInput(options.input, options.read);
   const ViewsSummary summary = summarise(set.views);
-  if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary));
-  print(set, summary);
+  if (summary.valid_pixels == 0)
+    throw IoError(options.input, "", "depth maps that hold depths", "none valid in any of them");
+  const ConventionCheck check = checkConvention(set.views, set.stored_from_camera);
+  if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary, check));
+  print(set, summary, check);
+  warn(check);
 }
 
 }  // namespace
@@ -129,9 +167,11 @@ void addInfo(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "info",
       "What is in a data set of depth maps.\n\nExample: vdbfuse info scan/\n\n"
-      "Ranges and boxes leave out the 0.2 % at each end, so that a few wild depths do not count.");
+      "Ranges and boxes leave out the 0.2 % at each end, so that a few wild depths do not count.\n"
+      "A few views are compared with each other; where another reading of poses or depths would agree much\n"
+      "better, a warning names it.");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("INPUT", options->input, "Folder of the data set")->required();
+  command->add_option("INPUT", options->input, "Data set: a folder or a file")->required();
   command->add_option("--json", options->json, "Write the same as JSON to this file");
   command->add_flag("--overwrite", options->overwrite, "Replace an existing output");
   addReadOptions(*command, options->read);

@@ -40,18 +40,9 @@ Json runJson(const JudgedScan& scan, const JudgementOrigin& origin) {
   return json;
 }
 
-// --overwrite removes the whole folder that was there.
-void refuseToReplaceInput(const Request& request) {
-  std::error_code ignored;
-  const fs::path input = fs::weakly_canonical(request.input, ignored),
-                 output = fs::weakly_canonical(request.output, ignored);
-  const auto [rest, in_input] = std::mismatch(output.begin(), output.end(), input.begin(), input.end());
-  if (rest == output.end()) throw InvalidArgument("OUTDIR", "holds the input");
-}
-
 void run(Request request) {
   const ThreadLimit threads(request.threads);
-  refuseToReplaceInput(request);
+  refuseToReplace(request.output, request.input);
   if (!request.json.empty() && !request.overwrite) refuseExisting(request.json);
   OutputFolder folder(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
   resolve(request.sensor, request.options);

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   vdbfuse::tool::Action action;
   vdbfuse::tool::addFormats(app, action);
   vdbfuse::tool::addInfo(app, action);
+  vdbfuse::tool::addConvert(app, action);
   vdbfuse::tool::addJudge(app, action);
   vdbfuse::tool::addFuse(app, action);
   vdbfuse::tool::addRender(app, action);

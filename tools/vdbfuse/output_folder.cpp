@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <system_error>
 
 #include "vdbfuse/base/errors.h"
@@ -47,6 +48,13 @@ void OutputFolder::commit() {
   if (!error) fs::rename(temporary_, target_, error);
   if (error) throw IoError(target_, "cannot be replaced: " + error.message());
   temporary_.clear();
+}
+
+void refuseToReplace(const fs::path& output, const fs::path& input) {
+  std::error_code ignored;
+  const fs::path from = fs::weakly_canonical(input, ignored), to = fs::weakly_canonical(output, ignored);
+  const auto [rest, in_input] = std::mismatch(to.begin(), to.end(), from.begin(), from.end());
+  if (rest == to.end()) throw InvalidArgument("OUTDIR", "holds the input");
 }
 
 }  // namespace vdbfuse::tool

@@ -25,4 +25,7 @@ class OutputFolder {
   std::filesystem::path target_, temporary_;
 };
 
+/// Throws InvalidArgument when replacing the folder `output` would remove `input`.
+void refuseToReplace(const std::filesystem::path& output, const std::filesystem::path& input);
+
 }  // namespace vdbfuse::tool

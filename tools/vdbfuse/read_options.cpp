@@ -2,6 +2,9 @@
 #include "read_options.h"
 
 #include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,7 +31,64 @@ std::vector<std::string> formatNames() {
   return names;
 }
 
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+CLI::Validator conventionCheck() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const bool known = text == "none" || text == "auto" || conventionNamed(text);
+        return known ? std::string() : "unknown convention '" + text + "'";
+      },
+      "auto|none|LIST");
+}
+
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+// What is asked for; the views may have to be looked at.
+std::optional<Convention> wanted(const DepthSet& set, const std::string& name, std::string& why) {
+  if (name == "none") return std::nullopt;
+  if (name != "auto") return conventionNamed(name);
+  const ConventionCheck check = checkConvention(set.views, set.stored_from_camera);
+  if (!check.better) return std::nullopt;
+  why = "; " + percent(check.better->agreement) + " of the points agree, " + percent(*check.agreement) +
+        " as they were read";
+  return check.better->convention;
+}
+
 }  // namespace
+
+DepthSet readInput(const std::filesystem::path& path, const ReadArguments& arguments) {
+  DepthSet set = readDepthSet(path, arguments);
+  std::string why;
+  const std::optional<Convention> convention = wanted(set, arguments.fix_convention, why);
+  if (!convention) return set;
+  set.views = underConvention(set.views, set.stored_from_camera, *convention);
+  set.notes.push_back("taken as " + nameOf(*convention) + ": " + describe(*convention) + why);
+  return set;
+}
+
+Json jsonOf(const ReadArguments& arguments) {
+  Json json;
+  json["format"] = arguments.format.empty() ? Json(nullptr) : Json(arguments.format);
+  json["depth_scale"] = arguments.depth_scale ? Json(*arguments.depth_scale) : Json(nullptr);
+  json["depth_kind"] = arguments.depth_kind ? Json(nameOf(*arguments.depth_kind)) : Json(nullptr);
+  json["baseline"] = arguments.baseline ? Json(*arguments.baseline) : Json(nullptr);
+  json["intrinsics"] = arguments.intrinsics ? Json(*arguments.intrinsics) : Json(nullptr);
+  json["splat_step_deg"] =
+      arguments.splat_step ? Json(*arguments.splat_step / kRadiansPerDegree) : Json(nullptr);
+  json["masks"] = arguments.masks.empty() ? Json(nullptr) : Json(arguments.masks.string());
+  json["min_depth"] = arguments.min_depth;
+  json["max_depth"] = std::isfinite(arguments.max_depth) ? Json(arguments.max_depth) : Json(nullptr);
+  json["fix_convention"] = arguments.fix_convention;
+  return json;
+}
+
+std::string depthText(const DepthReading& reading) {
+  char scale[32];
+  std::snprintf(scale, sizeof scale, "%.6g", reading.scale);
+  return reading.stored + (reading.kind ? std::string(", ") + nameOf(*reading.kind) : "") +
+         (reading.scale == 1 ? "" : std::string(", times ") + scale) + "; invalid: " + reading.invalid;
+}
 
 const char* nameOf(DepthKind kind) {
   for (const auto& [name, candidate] : kKinds) {
@@ -37,7 +97,7 @@ const char* nameOf(DepthKind kind) {
   return "";
 }
 
-void addReadOptions(CLI::App& command, ReadOptions& options) {
+void addReadOptions(CLI::App& command, ReadArguments& options) {
   const char* group = "Input";
   command.add_option("--format", options.format, "Format of the input, if looking at it is not enough")
       ->check(CLI::IsMember(formatNames()))
@@ -64,6 +124,31 @@ void addReadOptions(CLI::App& command, ReadOptions& options) {
           "--baseline", [&options](double baseline) { options.baseline = baseline; },
           "Distance between the two cameras, for --depth-kind disparity")
       ->check(CLI::PositiveNumber)
+      ->group(group);
+  command
+      .add_option_function<std::vector<double>>(
+          "--intrinsics",
+          [&options](const std::vector<double>& v) {
+            options.intrinsics = {{v[0], v[1], v[2], v[3]}};
+          },
+          "fx,fy,cx,cy of the depth camera in pixels, in place of what the data set says or lacks")
+      ->delimiter(',')
+      ->expected(4)
+      ->group(group);
+  command
+      .add_option_function<double>(
+          "--splat-step", [&options](double degrees) { options.splat_step = degrees * kRadiansPerDegree; },
+          "Degrees between pixels of the depth maps that points without rows and columns are made into; "
+          "default: as the points are spaced")
+      ->check(CLI::Range(1e-4, 20.0))
+      ->group(group);
+  command
+      .add_option("--fix-convention", options.fix_convention,
+                  "Another reading of poses and depths: auto (what the views agree best under), or a list of "
+                  "inverse, transposed, scalar-first, scalar-last, opengl, range, z, depth*FACTOR (see "
+                  "vdbfuse info)")
+      ->check(conventionCheck())
+      ->capture_default_str()
       ->group(group);
   command
       .add_option("--masks", options.masks,

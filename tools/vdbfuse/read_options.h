@@ -2,16 +2,36 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <optional>
+#include <string>
 
+#include "json_file.h"
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/fusion/conventions.h"
 
 namespace vdbfuse::tool {
 
+/// ReadOptions, and what is done to the views after reading.
+struct ReadArguments : ReadOptions {
+  /// "none", "auto", or a list of conventionNamed().
+  std::string fix_convention = "none";
+};
+
 /// The options of every subcommand that reads a data set: --format, --depth-scale, --depth-kind, --baseline,
-/// --masks, --min-depth, --max-depth. `options` must outlive the parsing.
-void addReadOptions(CLI::App& command, ReadOptions& options);
+/// --intrinsics, --splat-step, --masks, --min-depth, --max-depth, --fix-convention. `arguments` must outlive
+/// the parsing.
+void addReadOptions(CLI::App& command, ReadArguments& arguments);
+
+/// A data set under the convention that was asked for, or found; a note says which.
+DepthSet readInput(const std::filesystem::path& path, const ReadArguments& arguments);
 
 /// "z", "range", "disparity" or "inverse", as on the command line.
 const char* nameOf(DepthKind kind);
+
+/// As given: null where nothing was.
+Json jsonOf(const ReadArguments& arguments);
+
+/// "16-bit PNG, z, times 0.001; invalid: 0 and 65535".
+std::string depthText(const DepthReading& reading);
 
 }  // namespace vdbfuse::tool

@@ -84,9 +84,9 @@ void resolve(const SensorArguments& arguments, ReconstructOptions& options) {
 
 DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words,
                   ReadOptions::Color color) {
-  ReadOptions read = arguments.read;
+  ReadArguments read = arguments.read;
   read.color = color;
-  DepthSet set = readDepthSet(input, read);
+  DepthSet set = readInput(input, read);
   if (arguments.views > 0) set.views = set.views.first(arguments.views);
   if (words == Words::Keep) return set;
   for (const std::string& note : set.notes) std::fprintf(stderr, "note: %s\n", note.c_str());

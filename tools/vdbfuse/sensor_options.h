@@ -15,7 +15,7 @@ namespace vdbfuse::tool {
 
 /// As given on the command line.
 struct SensorArguments {
-  ReadOptions read;
+  ReadArguments read;
   std::size_t views = 0;
   std::vector<double> box;
   std::string outliers = "auto", noise = "gaussian", sensor;

@@ -22,6 +22,10 @@ PointImage noPoints(int width, int height);
 /// then no pinhole took them.
 Pinhole fitPinhole(const PointImage& points);
 
+/// The turning scanner that sees every point, given in its frame, at the point's pixel: least squares of
+/// azimuth by column and elevation by row, as fitPinhole().
+Spherical fitSpherical(const PointImage& points);
+
 /// The view that pixels and points in the frame of `projection` make; depth is what the projection says of
 /// each point. Throws InvalidArgument when the image is not of the projection's size.
 View viewFromPoints(const PointImage& points, const Projection& projection,
