@@ -7,7 +7,10 @@ namespace {
 std::string describe(const std::filesystem::path& path, const std::string& place, const std::string& expected,
                      const std::string& found) {
   const std::string where = place.empty() ? path.string() : path.string() + ": " + place;
-  return where + ": expected " + expected + ", found " + found;
+  std::string text = where + ": expected " + expected + ", found " + found;
+  // What was found may come from the file as it is; the message is one line.
+  for (char& c : text) c = c == '\n' || c == '\r' ? ' ' : c;
+  return text;
 }
 
 }  // namespace

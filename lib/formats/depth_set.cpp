@@ -5,11 +5,15 @@
 #include <cmath>
 
 #include "formats/arkit.h"
+#include "formats/colmap.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
+#include "formats/numpy.h"
+#include "formats/open3d.h"
 #include "formats/pcd.h"
 #include "formats/rgbd_folder.h"
 #include "formats/scannet.h"
+#include "formats/transforms.h"
 #include "formats/tum.h"
 #include "vdbfuse/base/errors.h"
 
@@ -87,8 +91,10 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(),  tumFormat(),    scannetFormat(),
-                                                      arkitFormat(), mvsnetFormat(), pcdFormat()};
+  static const std::vector<DepthSetFormat> formats = {
+      rgbdFormat(), tumFormat(),   scannetFormat(),    arkitFormat(),  mvsnetFormat(),
+      pcdFormat(),  numpyFormat(), transformsFormat(), colmapFormat(), open3dFormat(),
+  };
   return formats;
 }
 

@@ -24,7 +24,8 @@ struct Source {
 };
 
 void requireFile(const fs::path& path, const std::string& what) {
-  if (!fs::exists(path)) throw IoError(path, "", what, "nothing of that name");
+  std::error_code error;
+  if (!fs::exists(path, error)) throw IoError(path, "", what, "nothing of that name");
 }
 
 RasterHeader depthHeader(const Frame& frame) {

@@ -25,11 +25,15 @@ std::vector<std::string> filesEndingWith(const std::filesystem::path& folder, st
   return names;
 }
 
+bool isFile(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
 std::filesystem::path findPicture(const std::filesystem::path& folder, const std::string& stem) {
   for (const char* extension : {".png", ".jpg", ".jpeg"}) {
     std::filesystem::path candidate = folder / (stem + extension);
-    std::error_code error;
-    if (std::filesystem::is_regular_file(candidate, error)) return candidate;
+    if (isFile(candidate)) return candidate;
   }
   return {};
 }

@@ -14,6 +14,9 @@ namespace vdbfuse {
 /// be read.
 std::vector<std::string> filesEndingWith(const std::filesystem::path& folder, std::string_view suffix);
 
+/// Whether there is a regular file of that name; false, too, for names that no file can have.
+bool isFile(const std::filesystem::path& path);
+
 /// The first of `folder`/`stem` + one of .png, .jpg, .jpeg that exists; empty when none does.
 std::filesystem::path findPicture(const std::filesystem::path& folder, const std::string& stem);
 

@@ -256,10 +256,8 @@ Image<float> readNpyRaster(const fs::path& path) {
   return image;
 }
 
-std::string formatNpy(const std::vector<std::int64_t>& shape, const std::vector<double>& values, int bytes) {
-  NpyHeader header;
-  header.shape = shape;
-  std::string dictionary = "{'descr': '<f" + std::to_string(bytes) + "', 'fortran_order': False, 'shape': (";
+std::string formatNpyHeader(const std::string& descr, const std::vector<std::int64_t>& shape) {
+  std::string dictionary = "{'descr': '" + descr + "', 'fortran_order': False, 'shape': (";
   for (const std::int64_t side : shape) dictionary += std::to_string(side) + ", ";
   dictionary += "), }";
   constexpr std::size_t kAlignment = 64;
@@ -269,7 +267,11 @@ std::string formatNpy(const std::vector<std::int64_t>& shape, const std::vector<
   std::string text(kMagic);
   text += std::string("\x01\x00", 2);
   text.append(reinterpret_cast<const char*>(&length), sizeof length);
-  text += dictionary;
+  return text + dictionary;
+}
+
+std::string formatNpy(const std::vector<std::int64_t>& shape, const std::vector<double>& values, int bytes) {
+  std::string text = formatNpyHeader("<f" + std::to_string(bytes), shape);
   for (const double value : values) {
     const auto single = static_cast<float>(value);
     const void* number = bytes == 4 ? static_cast<const void*>(&single) : &value;

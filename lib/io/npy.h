@@ -53,6 +53,9 @@ Image<float> npyImage(const NpyArray& array, std::size_t first, int width, int h
 RasterHeader readNpyRasterHeader(const std::filesystem::path& path);
 Image<float> readNpyRaster(const std::filesystem::path& path);
 
+/// What stands before the numbers in a .npy file, a multiple of 64 bytes; `descr` as numpy names it ("<f4").
+std::string formatNpyHeader(const std::string& descr, const std::vector<std::int64_t>& shape);
+
 /// The bytes of a .npy file of little-endian floats of `bytes` (4 or 8) each.
 std::string formatNpy(const std::vector<std::int64_t>& shape, const std::vector<double>& values, int bytes);
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "io/colmap_map.h"
 #include "io/exr.h"
 #include "io/file_bytes.h"
 #include "io/npy.h"
@@ -28,6 +29,7 @@ std::optional<RasterKind> kindOf(const fs::path& path) {
   for (const auto& [magic, kind] : kMagics) {
     if (std::string_view(start).starts_with(magic)) return kind;
   }
+  if (isColmapMap(start)) return RasterKind::Colmap;
   return std::nullopt;
 }
 
@@ -54,7 +56,7 @@ Image<float> asFloats(const Image<T>& image) {
 }  // namespace
 
 std::string RasterHeader::text() const {
-  constexpr const char* kNames[] = {"PNG", "PFM", "EXR", "NPY", "TIFF"};
+  constexpr const char* kNames[] = {"PNG", "PFM", "EXR", "NPY", "TIFF", "COLMAP map"};
   const char* sign = number == Number::Signed ? " signed" : number == Number::Float ? " float" : "";
   return std::to_string(bits) + "-bit" + sign + " " + kNames[static_cast<std::size_t>(kind)];
 }
@@ -78,6 +80,8 @@ RasterHeader readRasterHeader(const fs::path& path) {
       return readNpyRasterHeader(path);
     case RasterKind::Tiff:
       return readTiffHeader(path);
+    case RasterKind::Colmap:
+      return readColmapMapHeader(path);
   }
   return {};
 }
@@ -94,6 +98,8 @@ Image<float> readRaster(const fs::path& path) {
       return readNpyRaster(path);
     case RasterKind::Tiff:
       return readTiff(path);
+    case RasterKind::Colmap:
+      return readColmapMap(path);
   }
   return {};
 }

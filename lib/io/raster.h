@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One number a pixel, from whatever kind of file holds it: PNG, PFM, EXR, NPY, TIFF, told apart by their
-// first bytes.
+// One number a pixel, from whatever kind of file holds it: PNG, PFM, EXR, NPY, TIFF, maps of COLMAP,
+// told apart by their first bytes.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace vdbfuse::io {
 
-enum class RasterKind { Png, Pfm, Exr, Npy, Tiff };
+enum class RasterKind { Png, Pfm, Exr, Npy, Tiff, Colmap };
 
 struct RasterHeader {
   RasterKind kind = RasterKind::Png;

@@ -4,7 +4,10 @@
 #include <fstream>
 
 #include "formats/camera_samples.h"
+#include "formats/colmap_sample.h"
+#include "formats/numpy_sample.h"
 #include "formats/tiny_scene.h"
+#include "formats/transforms_sample.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/organised_points.h"
 
@@ -30,6 +33,14 @@ void writePcd(const std::filesystem::path& folder) {
 }
 #endif
 
+// Two cameras, so that the trajectory is JSON.
+void writeOpen3dJson(const std::filesystem::path& folder) {
+  std::vector<View> views = tinyViews();
+  std::get<Pinhole>(views[1].projection).cx += 1e-9;
+  writeDepthSet(folder, "open3d", ViewSequence::fromViews(views));
+}
+
+constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms", kColmap[] = "colmap", kOpen3d[] = "open3d";
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet", kTum[] = "tum";
 
 }  // namespace
@@ -46,6 +57,19 @@ const std::vector<Sample>& samples() {
 #ifdef VDBFUSE_TEST_PCL
       {"pcd", "ascii", writePcd, ""},
 #endif
+      {"numpy", "written", writeAs<kNumpy>, ""},
+      {"numpy", "vggt", writeVggtSample, "predictions.npz"},
+      {"numpy", "cut3r", writeCut3rSample, ""},
+      {"numpy", "frame_files", writeFrameFilesSample, ""},
+      {"numpy", "array_files", writeArrayFilesSample, ""},
+      {"transforms", "written", writeAs<kTransforms>, ""},
+      {"transforms", "instant_ngp", writeInstantNgpSample, ""},
+      {"transforms", "nerfstudio", writeNerfstudioSample, "transforms.json"},
+      {"colmap", "written", writeAs<kColmap>, ""},
+      {"colmap", "text", writeColmapTextSample, ""},
+      {"colmap", "rig", writeColmapRigSample, ""},
+      {"open3d", "log", writeAs<kOpen3d>, ""},
+      {"open3d", "json", writeOpen3dJson, ""},
   };
   return all;
 }
