@@ -7,6 +7,7 @@
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/pcd.h"
+#include "formats/ptx.h"
 #include "formats/rgbd_folder.h"
 #include "vdbfuse/base/errors.h"
 
@@ -68,7 +69,8 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat()};
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),
+                                                      ptxFormat()};
   return formats;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <unordered_map>
@@ -89,17 +90,37 @@ class ExtentFinder {
   std::size_t points_ = 0;
 };
 
+template <class Fit>
+std::optional<Projection> attempt(const PointImage& points, const Fit& fit) {
+  try {
+    return fit(points);
+  } catch (const InvalidArgument&) {
+    return std::nullopt;
+  }
+}
+
+// Sum of squared distances between where points are seen and their pixels; infinite when one is not seen.
+double squaredError(const PointImage& points, const Projection& projection) {
+  double sum = 0;
+  for (int y = 0; y < points.height(); ++y) {
+    for (int x = 0; x < points.width(); ++x) {
+      const Eigen::Vector3f& p = points(x, y);
+      if (!p.allFinite() || p.isZero()) continue;
+      const auto seen = project(projection, p.cast<double>());
+      if (!seen) return std::numeric_limits<double>::infinity();
+      sum += (seen->x - x) * (seen->x - x) + (seen->y - y) * (seen->y - y);
+    }
+  }
+  return sum;
+}
+
+// A narrow scan is nearly that of a pinhole: the better of the two.
 std::optional<Projection> fitted(const PointImage& points) {
   if (points.empty()) return std::nullopt;
-  try {
-    return fitPinhole(points);
-  } catch (const InvalidArgument&) {
-  }
-  try {
-    return fitSpherical(points);
-  } catch (const InvalidArgument&) {
-  }
-  return std::nullopt;
+  const std::optional<Projection> pinhole = attempt(points, fitPinhole);
+  const std::optional<Projection> scanner = attempt(points, fitSpherical);
+  if (!pinhole || !scanner) return pinhole ? pinhole : scanner;
+  return squaredError(points, *scanner) < squaredError(points, *pinhole) ? scanner : pinhole;
 }
 
 // As many pixels as points, over what holds points.

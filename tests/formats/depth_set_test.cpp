@@ -56,26 +56,28 @@ TEST(DepthSet, NamedFormatOverridesWhatIsFound) {
     EXPECT_EQ(readDepthSet(folder.path(), options).format, name);
   }
   options.format = "colmap";
-  EXPECT_EQ(messageOf<InvalidArgument>([&] { readDepthSet(folder.path(), options); }),
-            "format: expected one of rgbd, mvsnet, pcd, found 'colmap'");
+  EXPECT_THAT(messageOf<InvalidArgument>([&] { readDepthSet(folder.path(), options); }),
+              testing::AllOf(testing::StartsWith("format: expected one of rgbd, mvsnet, pcd, "),
+                             testing::EndsWith(", found 'colmap'")));
 }
 
 TEST(DepthSet, UnknownFolderSaysWhatEachFormatMissed) {
   const TemporaryFolder folder;
-  EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder.path()); }),
-            folder.path().string() +
-                ": expected a data set of a known format, found none (rgbd: no *.depth.png; mvsnet: no "
-                "cams/*_cam.txt and no depth_est/*.pfm; pcd: no *.pcd)");
+  EXPECT_THAT(messageOf<IoError>([&] { readDepthSet(folder.path()); }),
+              testing::StartsWith(
+                  folder.path().string() +
+                  ": expected a data set of a known format, found none (rgbd: no *.depth.png; mvsnet: no "
+                  "cams/*_cam.txt and no depth_est/*.pfm; pcd: no *.pcd; "));
 }
 
 TEST(DepthSet, FileOrNothingInsteadOfAFolderIsSaid) {
   const TemporaryFolder folder;
   writeText(folder / "file", "x");
-  EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
-            (folder / "file").string() +
-                ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a "
-                "folder; pcd: not "
-                "a folder and no .pcd file)");
+  EXPECT_THAT(messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
+              testing::StartsWith(
+                  (folder / "file").string() +
+                  ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a "
+                  "folder; pcd: not a folder and no .pcd file; "));
   ReadOptions options;
   for (const char* name : {"rgbd", "mvsnet"}) {
     options.format = name;

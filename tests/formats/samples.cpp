@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/ptx_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/organised_points.h"
@@ -29,7 +30,12 @@ void writePcd(const std::filesystem::path& folder) {
 }
 #endif
 
+void writePtxFile(const std::filesystem::path& folder) {
+  std::ofstream(folder / "scans.ptx") << ptxOfTwoScans();
+}
+
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
+constexpr char kPtx[] = "ptx";
 
 }  // namespace
 
@@ -40,6 +46,8 @@ const std::vector<Sample>& samples() {
 #ifdef VDBFUSE_TEST_PCL
       {"pcd", "ascii", writePcd, ""},
 #endif
+      {"ptx", "written", writeAs<kPtx>, ""},
+      {"ptx", "two_scans", writePtxFile, "scans.ptx"},
   };
   return all;
 }
