@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/e57.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/pcd.h"
@@ -69,8 +70,8 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),
-                                                      ptxFormat()};
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(), ptxFormat(),
+                                                      e57Format()};
   return formats;
 }
 

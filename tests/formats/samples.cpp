@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/e57_writer.h"
 #include "formats/ptx_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -34,6 +35,14 @@ void writePtxFile(const std::filesystem::path& folder) {
   std::ofstream(folder / "scans.ptx") << ptxOfTwoScans();
 }
 
+template <E57Part (*make)(const View&)>
+void writeE57(const std::filesystem::path& folder) {
+  std::vector<E57Part> parts;
+  for (const View& view : make == loosePart ? tinyDenseScans() : tinySphericalViews())
+    parts.push_back(make(view));
+  std::ofstream(folder / "scans.e57", std::ios::binary) << e57File(parts);
+}
+
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
 constexpr char kPtx[] = "ptx";
 
@@ -48,6 +57,9 @@ const std::vector<Sample>& samples() {
 #endif
       {"ptx", "written", writeAs<kPtx>, ""},
       {"ptx", "two_scans", writePtxFile, "scans.ptx"},
+      {"e57", "cartesian_floats", writeE57<cartesianPart>, "scans.e57"},
+      {"e57", "spherical_integers", writeE57<sphericalPart>, "scans.e57"},
+      {"e57", "loose_doubles", writeE57<loosePart>, "scans.e57"},
   };
   return all;
 }
