@@ -10,6 +10,7 @@
 #include "formats/pcd.h"
 #include "formats/ptx.h"
 #include "formats/rgbd_folder.h"
+#include "formats/sens.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -70,8 +71,8 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(), ptxFormat(),
-                                                      e57Format()};
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),
+                                                      ptxFormat(),  e57Format(),    sensFormat()};
   return formats;
 }
 

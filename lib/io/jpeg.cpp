@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "io/encoded_picture.h"
 #include "io/file_bytes.h"
 #include "io/image_size.h"
 #include "vdbfuse/base/errors.h"
@@ -15,14 +16,26 @@ namespace vdbfuse {
 
 Image<Rgb8> readJpeg(const std::filesystem::path& path) {
   const std::string bytes = io::readFileBytes(path);
+  return io::decodeJpeg({path, "", bytes, 0, 0});
+}
+
+Image<Rgb8> io::decodeJpeg(const EncodedPicture& picture) {
+  const std::filesystem::path& path = picture.path;
+  const std::string& place = picture.place;
+  const std::string_view bytes = picture.bytes;
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  if (bytes.empty()) throw IoError(path, "", "a JPEG file", "an empty file");
+  if (bytes.empty()) throw IoError(path, place, "a JPEG file", "an empty file");
   const std::unique_ptr<std::remove_pointer_t<tjhandle>, decltype(&tjDestroy)> decoder(tjInitDecompress(),
                                                                                        tjDestroy);
   int width = 0, height = 0, subsampling = 0, colorspace = 0;
   if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &subsampling, &colorspace) != 0)
-    throw IoError(path, "", "a JPEG file", tjGetErrorStr2(decoder.get()));
-  checkImageSize(path, "", width, height);
+    throw IoError(path, place, "a JPEG file", tjGetErrorStr2(decoder.get()));
+  checkPictureSize(picture, width, height);
+  // A byte holds a few hundred pixels at best: a file this short need not cost us memory.
+  constexpr std::int64_t kMostPixelsPerByte = 2000;
+  if (std::int64_t{width} * height / kMostPixelsPerByte > static_cast<std::int64_t>(bytes.size()))
+    throw IoError(path, endPlace(picture), "pixels of a " + sizeText(width, height) + " image",
+                  "the end of the file");
   Image<Rgb8> image(width, height);
   const int failed = tjDecompress2(decoder.get(), data, bytes.size(), image.data()->data(), width, 0, height,
                                    TJPF_RGB, TJFLAG_ACCURATEDCT);
@@ -30,10 +43,10 @@ Image<Rgb8> readJpeg(const std::filesystem::path& path) {
   const std::string message = tjGetErrorStr2(decoder.get());
   // Warnings come back as failures too; all but a missing end leave a good picture.
   if (message.find("Premature end") != std::string::npos) {
-    throw IoError(path, "byte " + std::to_string(bytes.size()),
-                  "pixels of a " + sizeText(width, height) + " image", "the end of the file");
+    throw IoError(path, endPlace(picture), "pixels of a " + sizeText(width, height) + " image",
+                  "the end of the file");
   }
-  if (tjGetErrorCode(decoder.get()) == TJERR_FATAL) throw IoError(path, "", "a sound JPEG file", message);
+  if (tjGetErrorCode(decoder.get()) == TJERR_FATAL) throw IoError(path, place, "a sound JPEG file", message);
   return image;
 }
 

@@ -5,6 +5,7 @@
 
 #include "formats/e57_writer.h"
 #include "formats/ptx_sample.h"
+#include "formats/sens_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/organised_points.h"
@@ -43,6 +44,11 @@ void writeE57(const std::filesystem::path& folder) {
   std::ofstream(folder / "scans.e57", std::ios::binary) << e57File(parts);
 }
 
+template <int color, int depth>
+void writeSens(const std::filesystem::path& folder) {
+  std::ofstream(folder / "a.sens", std::ios::binary) << sensBytes(tinyRecording(color, depth));
+}
+
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
 constexpr char kPtx[] = "ptx";
 
@@ -60,6 +66,8 @@ const std::vector<Sample>& samples() {
       {"e57", "cartesian_floats", writeE57<cartesianPart>, "scans.e57"},
       {"e57", "spherical_integers", writeE57<sphericalPart>, "scans.e57"},
       {"e57", "loose_doubles", writeE57<loosePart>, "scans.e57"},
+      {"sens", "jpeg_zlib", writeSens<2, 1>, "a.sens"},
+      {"sens", "png_raw", writeSens<1, 0>, "a.sens"},
   };
   return all;
 }
