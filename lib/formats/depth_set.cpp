@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/e57.h"
+#include "formats/kitti.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/pcd.h"
@@ -71,8 +72,8 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),
-                                                      ptxFormat(),  e57Format(),    sensFormat()};
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),  ptxFormat(),
+                                                      e57Format(),  sensFormat(),   kittiFormat()};
   return formats;
 }
 

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "formats/e57_writer.h"
+#include "formats/kitti_sample.h"
 #include "formats/ptx_sample.h"
 #include "formats/sens_sample.h"
 #include "formats/tiny_scene.h"
@@ -68,6 +69,8 @@ const std::vector<Sample>& samples() {
       {"e57", "loose_doubles", writeE57<loosePart>, "scans.e57"},
       {"sens", "jpeg_zlib", writeSens<2, 1>, "a.sens"},
       {"sens", "png_raw", writeSens<1, 0>, "a.sens"},
+      {"kitti", "poses_of_camera", writeKittiOfCamera, ""},
+      {"kitti", "poses_of_laser", writeKittiOfLaser, ""},
   };
   return all;
 }
