@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/e57_points.h"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <limits>
-
-#include "formats/scan_grid.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -16,155 +10,6 @@ namespace fs = std::filesystem;
 using io::littleEndian;
 
 constexpr std::size_t kSectionHeader = 32, kPacketHeader = 4, kDataHeader = 6;
-
-// The part of a bytestream that has been read from packets and not taken yet.
-class BitStream {
- public:
-  void append(std::string_view bytes) {
-    bytes_.erase(0, position_ / 8);
-    position_ %= 8;
-    bytes_.append(bytes);
-  }
-  std::uint64_t bitsLeft() const { return bytes_.size() * 8 - position_; }
-
-  // REQUIRES: bits <= bitsLeft(), bits <= 64.
-  std::uint64_t take(int bits) {
-    std::uint64_t value = 0;
-    for (int done = 0; done < bits;) {
-      const auto byte = static_cast<unsigned char>(bytes_[position_ / 8]);
-      const int within = static_cast<int>(position_ % 8), part = std::min(8 - within, bits - done);
-      value |= std::uint64_t{(static_cast<unsigned>(byte) >> within) & ((1U << part) - 1)} << done;
-      done += part, position_ += static_cast<std::size_t>(part);
-    }
-    return value;
-  }
-
- private:
-  std::string bytes_;
-  std::size_t position_ = 0;  // bits
-};
-
-// A field with its bytestream.
-struct Channel {
-  E57Field field;
-  std::size_t number = 0;
-  BitStream stream;
-
-  std::uint64_t recordsLeft() const {
-    return field.bits == 0 ? std::numeric_limits<std::uint64_t>::max()
-                           : stream.bitsLeft() / static_cast<std::uint64_t>(field.bits);
-  }
-  double take() {
-    const std::uint64_t raw = stream.take(field.bits);
-    if (field.type == E57Field::Type::Single) return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
-    if (field.type == E57Field::Type::Double) return std::bit_cast<double>(raw);
-    const auto value = static_cast<std::int64_t>(static_cast<std::uint64_t>(field.minimum) + raw);
-    return static_cast<double>(value) * field.scale + field.offset;
-  }
-};
-
-Eigen::Vector3d fromSpherical(const Eigen::Vector3d& v) {
-  const double range = v.x(), azimuth = v.y(), elevation = v.z();
-  return range * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
-                                 std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-}
-
-struct Cell {
-  int column = 0, row = 0;
-};
-
-// Extent of rows and columns.
-struct Cells {
-  int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
-  void add(int i) { low = std::min(low, i), high = std::max(high, i); }
-  std::int64_t count() const { return std::int64_t{high} - low + 1; }
-};
-
-class Decoder {
- public:
-  Decoder(const E57Scan& scan, const E57Selection& selection)
-      : record_count_(scan.record_count), is_spherical_(selection.is_spherical) {
-    for (const std::size_t field : selection.coordinates) addChannel(scan, field);
-    has_invalid_ = selection.invalid.has_value();
-    if (has_invalid_) addChannel(scan, *selection.invalid);
-    has_cells_ = selection.row && selection.column;
-    if (has_cells_) addChannel(scan, *selection.column), addChannel(scan, *selection.row);
-  }
-
-  bool isDone() const { return records_ == record_count_; }
-  std::uint64_t records() const { return records_; }
-
-  // `begins` are where bytestreams lie in the packet, one more than there are.
-  void addPacket(std::string_view packet, const std::vector<std::size_t>& begins) {
-    for (Channel& channel : channels_) {
-      const std::size_t begin = begins[channel.number];
-      channel.stream.append(packet.substr(begin, begins[channel.number + 1] - begin));
-    }
-    std::uint64_t complete = record_count_ - records_;
-    for (const Channel& channel : channels_) complete = std::min(complete, channel.recordsLeft());
-    for (std::uint64_t i = 0; i < complete; ++i) takeRecord();
-    records_ += complete;
-  }
-
-  PointScan scan() {
-    PointScan result;
-    if (!has_cells_ || points_.empty() || !isDense()) {
-      result.loose = std::move(points_);
-      return result;
-    }
-    PointImage image = noPoints(static_cast<int>(columns_.count()), static_cast<int>(rows_.count()));
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      Eigen::Vector3f& pixel = image(cells_[i].column - columns_.low, cells_[i].row - rows_.low);
-      // Of several returns of one pulse the nearest.
-      if (!pixel.allFinite() || points_[i].squaredNorm() < pixel.squaredNorm()) pixel = points_[i];
-    }
-    result.organised = upright(std::move(image));
-    return result;
-  }
-
- private:
-  void addChannel(const E57Scan& scan, std::size_t field) {
-    channels_.push_back({scan.fields[field], field, {}});
-  }
-
-  void takeRecord() {
-    Eigen::Vector3d values;
-    for (int i = 0; i < 3; ++i) values[i] = channels_[static_cast<std::size_t>(i)].take();
-    std::size_t next = 3;
-    const bool is_valid = !has_invalid_ || channels_[next++].take() == 0;
-    Cell cell;
-    if (has_cells_) cell.column = index(channels_[next++].take()), cell.row = index(channels_[next].take());
-    if (has_cells_) columns_.add(cell.column), rows_.add(cell.row);
-    if (!is_valid) return;
-    const Eigen::Vector3d scanned = is_spherical_ ? fromSpherical(values) : values;
-    const Eigen::Vector3f point = scannedPoint({-scanned.y(), -scanned.z(), scanned.x()});
-    if (!point.allFinite()) return;
-    points_.push_back(point);
-    if (has_cells_) cells_.push_back(cell);
-  }
-
-  // Indices that no image has make the scan a loose one.
-  int index(double value) {
-    constexpr double kLargest = 1 << 30;
-    const bool is_index = std::abs(value) <= kLargest && value == std::floor(value);
-    if (!is_index) has_wild_cells_ = true;
-    return is_index ? static_cast<int>(value) : 0;
-  }
-
-  bool isDense() const {
-    constexpr std::int64_t kMostPixels = 1 << 26, kSparsest = 64;
-    const std::int64_t columns = columns_.count(), rows = rows_.count();
-    const auto records = static_cast<std::int64_t>(std::min<std::uint64_t>(records_, kMostPixels));
-    return !has_wild_cells_ && columns <= kMostPixels / rows && columns * rows <= kSparsest * records;
-  }
-
-  std::uint64_t record_count_, records_ = 0;
-  bool is_spherical_, has_invalid_ = false, has_cells_ = false, has_wild_cells_ = false;
-  std::vector<Channel> channels_;  // coordinates, then the others that are there
-  std::vector<Eigen::Vector3f> points_;
-  std::vector<Cell> cells_;
-  Cells columns_, rows_;
-};
 
 // Walks through the packets of a section.
 class SectionReader {
@@ -183,7 +28,7 @@ class SectionReader {
     position_ = pages_.logical(littleEndian(header, 16, 8), "the first packet of " + scan.place);
   }
 
-  void decode(Decoder& decoder) {
+  void decode(E57Decoder& decoder) {
     while (!decoder.isDone()) {
       if (position_ >= end_)
         throw IoError(path_, pages_.place(position_),
@@ -194,7 +39,7 @@ class SectionReader {
   }
 
  private:
-  void readPacket(Decoder& decoder) {
+  void readPacket(E57Decoder& decoder) {
     const std::string header = pages_.read(position_, kPacketHeader, "a packet header");
     const auto kind = static_cast<unsigned char>(header[0]);
     const std::uint64_t length = littleEndian(header, 2, 2) + 1;
@@ -257,7 +102,7 @@ E57Selection selectFields(const fs::path& path, const E57Scan& scan) {
 }
 
 PointScan readE57Points(const fs::path& path, const E57Scan& scan) {
-  Decoder decoder(scan, selectFields(path, scan));
+  E57Decoder decoder(scan, selectFields(path, scan));
   SectionReader(path, scan).decode(decoder);
   return decoder.scan();
 }

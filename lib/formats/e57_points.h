@@ -12,18 +12,12 @@
 // on from packet to packet, and packets need not hold as many records of one field as of another.
 #pragma once
 
+#include "formats/e57_decoder.h"
 #include "formats/e57_pages.h"
 #include "formats/e57_scan.h"
 #include "formats/point_views.h"
 
 namespace vdbfuse {
-
-/// Which of a scan's fields are read.
-struct E57Selection {
-  std::size_t coordinates[3] = {};
-  bool is_spherical = false;
-  std::optional<std::size_t> invalid, row, column;
-};
 
 /// Throws IoError when coordinates are missing or no numbers.
 E57Selection selectFields(const std::filesystem::path& path, const E57Scan& scan);
