@@ -97,7 +97,7 @@ int E57Decoder::index(double value) {
 }
 
 bool E57Decoder::isDense() const {
-  constexpr std::int64_t kMostPixels = 1 << 26, kSparsest = 64;
+  constexpr std::int64_t kMostPixels = 1 << 26, kSparsest = 16;
   if (!has_cells_ || has_wild_cells_ || points_.empty()) return false;
   const std::int64_t columns = columns_.count(), rows = rows_.count();
   const auto records = static_cast<std::int64_t>(std::min<std::uint64_t>(records_, kMostPixels));

@@ -23,7 +23,7 @@ namespace vdbfuse {
 E57Selection selectFields(const std::filesystem::path& path, const E57Scan& scan);
 
 /// The valid points in camera axes: an upright image when all know their row and column and fill more than a
-/// 64th of it, loose otherwise. Throws IoError.
+/// 16th of it, loose otherwise. Throws IoError.
 PointScan readE57Points(const std::filesystem::path& path, const E57Scan& scan);
 
 }  // namespace vdbfuse

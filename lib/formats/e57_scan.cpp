@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 using pugi::xml_node;
 
 constexpr double kQuaternionTolerance = 1e-3;
+constexpr std::uint64_t kSmallestRecord = 3;  // bytes; a byte a coordinate
 constexpr std::array kCoordinates = {"cartesianX",     "cartesianY",       "cartesianZ",
                                      "sphericalRange", "sphericalAzimuth", "sphericalElevation"};
 
@@ -124,20 +125,17 @@ void checkCodecs(const Context& context, const xml_node& points) {
 }
 
 // Records that say nothing about where their point lies take no bytes: then any number of them would fit.
-void checkRecords(const Context& context, const E57Scan& scan, std::uint64_t file_bytes) {
-  std::uint64_t bits = 0;
-  for (const char* name : kCoordinates) {
-    if (const auto index = scan.find(name)) bits += static_cast<std::uint64_t>(scan.fields[*index].bits);
-  }
-  if (bits == 0 && scan.record_count > 0)
+void checkRecords(const Context& context, const E57Scan& scan) {
+  const bool is_stored = std::any_of(kCoordinates.begin(), kCoordinates.end(), [&](const char* name) {
+    const auto index = scan.find(name);
+    return index && scan.fields[*index].bits > 0;
+  });
+  if (!is_stored && scan.record_count > 0)
     context.fail("points/prototype", "cartesianX, Y, Z or sphericalRange, Azimuth, Elevation",
                  "no coordinate that takes a bit");
-  if (scan.record_count > 0 && scan.record_count > file_bytes * 8 / bits)
-    context.fail("points", "no more records than the file has room for",
-                 std::to_string(scan.record_count) + " records");
 }
 
-E57Scan scanOf(const Context& context, const xml_node& node, std::uint64_t file_bytes) {
+E57Scan scanOf(const Context& context, const xml_node& node) {
   E57Scan scan;
   scan.place = context.place;
   scan.name = oneLine(trimmed(node.child_value("name")), 200);
@@ -151,7 +149,7 @@ E57Scan scanOf(const Context& context, const xml_node& node, std::uint64_t file_
   for (const xml_node& field : points.child("prototype").children()) {
     if (field.type() == pugi::node_element) scan.fields.push_back(fieldOf(context, field));
   }
-  checkRecords(context, scan, file_bytes);
+  checkRecords(context, scan);
   return scan;
 }
 
@@ -172,9 +170,17 @@ std::vector<E57Scan> parseE57(const fs::path& path, const std::string& xml, std:
                   std::string(result.description()) + " at its byte " + std::to_string(result.offset));
   const xml_node root = document.child("e57Root");
   if (!root) throw IoError(path, "the XML section", "e57Root", "none");
+  // Of all scans together: several that claim the same bytes are none.
+  std::uint64_t room = file_bytes / kSmallestRecord;
   std::vector<E57Scan> scans;
-  for (const xml_node& node : root.child("data3D").children("vectorChild"))
-    scans.push_back(scanOf({path, "data3D[" + std::to_string(scans.size()) + "]"}, node, file_bytes));
+  for (const xml_node& node : root.child("data3D").children("vectorChild")) {
+    const Context context{path, "data3D[" + std::to_string(scans.size()) + "]"};
+    scans.push_back(scanOf(context, node));
+    if (scans.back().record_count > room)
+      context.fail("points", "no more records than the file has room for",
+                   std::to_string(scans.back().record_count) + " records");
+    room -= scans.back().record_count;
+  }
   if (scans.empty()) throw IoError(path, "data3D", "a scan", "none");
   return scans;
 }

@@ -42,7 +42,7 @@ struct E57Scan {
 };
 
 /// Throws IoError: no XML, no scans, numbers that are none, codecs other than bitpack, poses that are no
-/// rigid transform. `file_bytes` bounds the number of records.
+/// rigid transform, more records in all than would fit into `file_bytes` with three bytes each.
 std::vector<E57Scan> parseE57(const std::filesystem::path& path, const std::string& xml,
                               std::uint64_t file_bytes);
 

@@ -123,10 +123,15 @@ std::optional<Projection> fitted(const PointImage& points) {
   return squaredError(points, *scanner) < squaredError(points, *pinhole) ? scanner : pinhole;
 }
 
-// As many pixels as points, over what holds points.
+// As many pixels as points, over what holds points; coarser where a stray point far from the others would
+// make that an image of emptiness.
 double naturalStep(const Extent& extent) {
-  const double step = std::sqrt(extent.solid_angle / static_cast<double>(extent.points));
-  return std::clamp(step, 1e-5, 5 * kDegree);
+  constexpr double kMostPixelsPerPoint = 256, kSmallImage = 1 << 16;
+  const auto points = static_cast<double>(extent.points);
+  const double step = std::sqrt(extent.solid_angle / points);
+  const double coarse = std::sqrt(extent.azimuth_width * extent.elevation_height /
+                                  (kMostPixelsPerPoint * points + kSmallImage));
+  return std::clamp(std::max(step, coarse), 1e-5, 5 * kDegree);
 }
 
 Spherical splatProjection(const Extent& extent, double step) {

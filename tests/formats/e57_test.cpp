@@ -204,6 +204,20 @@ TEST(E57, BrokenXmlIsRefusedByTheNameOfItsElement) {
             ": data3D[0]/colorRed: expected a maximum that is not below the minimum, found -55");
 }
 
+TEST(E57, ScansThatTogetherClaimMoreThanTheFileHoldsAreRefused) {
+  const std::string one = "recordCount=\"64\"", many = "recordCount=\"9999\"";
+  const File file({smallPart(), smallPart()});
+  std::string text = logical(readText(file / "a.e57"));
+  const std::size_t length = text.find("</e57Root>") + 11 - text.find("<?xml");
+  text = replaced(replaced(text, one, many), one, many);
+  for (int i = 0; i < 8; ++i)
+    text[32 + static_cast<std::size_t>(i)] = static_cast<char>((length + 4) >> (8 * i));
+  file.write(test::e57Pages(text));
+  EXPECT_THAT(file.complaint(),
+              testing::EndsWith("]/points: expected no more records than the file has room for, "
+                                "found 9999 records"));
+}
+
 TEST(E57, WhatIsNotCoveredIsRefusedByName) {
   E57Part part = smallPart();
   part.codecs = "<vectorChild><zlibCodec/></vectorChild>";

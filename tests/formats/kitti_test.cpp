@@ -132,6 +132,17 @@ TEST(Kitti, BrokenFilesAreRefused) {
             empty.path().string() + ": expected sweeps (velodyne/*.bin), found none");
 }
 
+TEST(Kitti, StrayPointFarFromTheOthersMakesNoImageOfEmptiness) {
+  const Folder folder;
+  std::vector<float> points = {-1, -1, 3, 0};
+  for (int i = 0; i < 5000; ++i) {
+    const auto across = static_cast<float>(i % 50) * 3e-4F, up = static_cast<float>(i / 50) * 1.5e-4F;
+    points.insert(points.end(), {1, across, up, 0});
+  }
+  writeText(folder / "velodyne/000000.bin", floatBytes(points));
+  EXPECT_LT(folder.read().views.load(0).map.depth.size(), 1500000U);
+}
+
 TEST(Kitti, LimitsAndScaleAreObeyedAndCamerasRefused) {
   const Folder folder;
   ReadOptions options;
