@@ -6,13 +6,17 @@
 
 #include "formats/arkit.h"
 #include "formats/colmap.h"
+#include "formats/e57.h"
+#include "formats/kitti.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/numpy.h"
 #include "formats/open3d.h"
 #include "formats/pcd.h"
+#include "formats/ptx.h"
 #include "formats/rgbd_folder.h"
 #include "formats/scannet.h"
+#include "formats/sens.h"
 #include "formats/transforms.h"
 #include "formats/tum.h"
 #include "vdbfuse/base/errors.h"
@@ -92,9 +96,12 @@ std::vector<std::string> validate(const ReadOptions& options) {
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
   static const std::vector<DepthSetFormat> formats = {
-      rgbdFormat(), tumFormat(),   scannetFormat(),    arkitFormat(),  mvsnetFormat(),
-      pcdFormat(),  numpyFormat(), transformsFormat(), colmapFormat(), open3dFormat(),
-  };
+      // Depth cameras.
+      rgbdFormat(), tumFormat(), open3dFormat(), scannetFormat(), sensFormat(), arkitFormat(),
+      // Stereo and networks.
+      mvsnetFormat(), colmapFormat(), transformsFormat(), numpyFormat(),
+      // Scanners.
+      pcdFormat(), ptxFormat(), e57Format(), kittiFormat()};
   return formats;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <unordered_map>
@@ -89,23 +90,48 @@ class ExtentFinder {
   std::size_t points_ = 0;
 };
 
-std::optional<Projection> fitted(const PointImage& points) {
-  if (points.empty()) return std::nullopt;
+template <class Fit>
+std::optional<Projection> attempt(const PointImage& points, const Fit& fit) {
   try {
-    return fitPinhole(points);
+    return fit(points);
   } catch (const InvalidArgument&) {
+    return std::nullopt;
   }
-  try {
-    return fitSpherical(points);
-  } catch (const InvalidArgument&) {
-  }
-  return std::nullopt;
 }
 
-// As many pixels as points, over what holds points.
+// Sum of squared distances between where points are seen and their pixels; infinite when one is not seen.
+double squaredError(const PointImage& points, const Projection& projection) {
+  double sum = 0;
+  for (int y = 0; y < points.height(); ++y) {
+    for (int x = 0; x < points.width(); ++x) {
+      const Eigen::Vector3f& p = points(x, y);
+      if (!p.allFinite() || p.isZero()) continue;
+      const auto seen = project(projection, p.cast<double>());
+      if (!seen) return std::numeric_limits<double>::infinity();
+      sum += (seen->x - x) * (seen->x - x) + (seen->y - y) * (seen->y - y);
+    }
+  }
+  return sum;
+}
+
+// A narrow scan is nearly that of a pinhole: the better of the two.
+std::optional<Projection> fitted(const PointImage& points) {
+  if (points.empty()) return std::nullopt;
+  const std::optional<Projection> pinhole = attempt(points, fitPinhole);
+  const std::optional<Projection> scanner = attempt(points, fitSpherical);
+  if (!pinhole || !scanner) return pinhole ? pinhole : scanner;
+  return squaredError(points, *scanner) < squaredError(points, *pinhole) ? scanner : pinhole;
+}
+
+// As many pixels as points, over what holds points; coarser where a stray point far from the others would
+// make that an image of emptiness.
 double naturalStep(const Extent& extent) {
-  const double step = std::sqrt(extent.solid_angle / static_cast<double>(extent.points));
-  return std::clamp(step, 1e-5, 5 * kDegree);
+  constexpr double kMostPixelsPerPoint = 256, kSmallImage = 1 << 16;
+  const auto points = static_cast<double>(extent.points);
+  const double step = std::sqrt(extent.solid_angle / points);
+  const double coarse = std::sqrt(extent.azimuth_width * extent.elevation_height /
+                                  (kMostPixelsPerPoint * points + kSmallImage));
+  return std::clamp(std::max(step, coarse), 1e-5, 5 * kDegree);
 }
 
 Spherical splatProjection(const Extent& extent, double step) {

@@ -35,6 +35,21 @@ std::string readFileStart(const fs::path& path, std::size_t count) {
   return bytes;
 }
 
+std::string readFilePart(const fs::path& path, std::uint64_t offset, std::uint64_t count) {
+  const std::uint64_t size = fileSize(path);
+  if (offset > size || count > size - offset)
+    throw IoError(path, "byte " + std::to_string(size),
+                  std::to_string(count) + " bytes from byte " + std::to_string(offset) + " on",
+                  "the end of the file");
+  std::string bytes(static_cast<std::size_t>(count), '\0');
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw IoError(path, "cannot be opened: " + std::generic_category().message(errno));
+  file.seekg(static_cast<std::streamoff>(offset));
+  if (!file.read(bytes.data(), static_cast<std::streamsize>(count)))
+    throw IoError(path, "cannot be read to its end");
+  return bytes;
+}
+
 std::string readFileBytes(const fs::path& path) {
   return readFileStart(path, std::numeric_limits<std::size_t>::max());
 }

@@ -15,6 +15,9 @@ std::string readFileBytes(const std::filesystem::path& path);
 /// The first `count` bytes, or all where there are fewer. IoError as above.
 std::string readFileStart(const std::filesystem::path& path, std::size_t count);
 
+/// Bytes [offset, offset + count). IoError as above, or when there are fewer.
+std::string readFilePart(const std::filesystem::path& path, std::uint64_t offset, std::uint64_t count);
+
 /// Bytes in a regular file. IoError as above.
 std::uint64_t fileSize(const std::filesystem::path& path);
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "io/encoded_picture.h"
 #include "io/file_bytes.h"
 #include "io/image_size.h"
 #include "vdbfuse/base/errors.h"
@@ -17,13 +18,14 @@ namespace {
 
 using Decoder = std::unique_ptr<std::remove_pointer_t<tjhandle>, decltype(&tjDestroy)>;
 
-std::pair<int, int> sizeOf(const std::filesystem::path& path, tjhandle decoder, const std::string& bytes) {
-  if (bytes.empty()) throw IoError(path, "", "a JPEG file", "an empty file");
+std::pair<int, int> sizeOf(const std::filesystem::path& path, const std::string& place, tjhandle decoder,
+                           std::string_view bytes) {
+  if (bytes.empty()) throw IoError(path, place, "a JPEG file", "an empty file");
   int width = 0, height = 0, subsampling = 0, colorspace = 0;
   if (tjDecompressHeader3(decoder, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size(), &width,
                           &height, &subsampling, &colorspace) != 0)
-    throw IoError(path, "", "a JPEG file", tjGetErrorStr2(decoder));
-  checkImageSize(path, "", width, height);
+    throw IoError(path, place, "a JPEG file", tjGetErrorStr2(decoder));
+  checkImageSize(path, place, width, height);
   return {width, height};
 }
 
@@ -31,14 +33,27 @@ std::pair<int, int> sizeOf(const std::filesystem::path& path, tjhandle decoder, 
 
 std::pair<int, int> readJpegSize(const std::filesystem::path& path) {
   const Decoder decoder(tjInitDecompress(), tjDestroy);
-  return sizeOf(path, decoder.get(), io::readFileBytes(path));
+  return sizeOf(path, "", decoder.get(), io::readFileBytes(path));
 }
 
 Image<Rgb8> readJpeg(const std::filesystem::path& path) {
   const std::string bytes = io::readFileBytes(path);
+  return io::decodeJpeg({path, "", bytes, 0, 0});
+}
+
+Image<Rgb8> io::decodeJpeg(const EncodedPicture& picture) {
+  const std::filesystem::path& path = picture.path;
+  const std::string& place = picture.place;
+  const std::string_view bytes = picture.bytes;
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
   const Decoder decoder(tjInitDecompress(), tjDestroy);
-  const auto [width, height] = sizeOf(path, decoder.get(), bytes);
+  const auto [width, height] = sizeOf(path, place, decoder.get(), bytes);
+  checkPictureSize(picture, width, height);
+  // A byte holds a few hundred pixels at best: a file this short need not cost us memory.
+  constexpr std::int64_t kMostPixelsPerByte = 2000;
+  if (std::int64_t{width} * height / kMostPixelsPerByte > static_cast<std::int64_t>(bytes.size()))
+    throw IoError(path, endPlace(picture), "pixels of a " + sizeText(width, height) + " image",
+                  "the end of the file");
   Image<Rgb8> image(width, height);
   const int failed = tjDecompress2(decoder.get(), data, bytes.size(), image.data()->data(), width, 0, height,
                                    TJPF_RGB, TJFLAG_ACCURATEDCT);
@@ -46,10 +61,10 @@ Image<Rgb8> readJpeg(const std::filesystem::path& path) {
   const std::string message = tjGetErrorStr2(decoder.get());
   // Warnings come back as failures too; all but a missing end leave a good picture.
   if (message.find("Premature end") != std::string::npos) {
-    throw IoError(path, "byte " + std::to_string(bytes.size()),
-                  "pixels of a " + sizeText(width, height) + " image", "the end of the file");
+    throw IoError(path, endPlace(picture), "pixels of a " + sizeText(width, height) + " image",
+                  "the end of the file");
   }
-  if (tjGetErrorCode(decoder.get()) == TJERR_FATAL) throw IoError(path, "", "a sound JPEG file", message);
+  if (tjGetErrorCode(decoder.get()) == TJERR_FATAL) throw IoError(path, place, "a sound JPEG file", message);
   return image;
 }
 

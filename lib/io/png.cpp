@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "io/encoded_picture.h"
 #include "io/file_bytes.h"
 #include "io/image_size.h"
 #include "vdbfuse/base/errors.h"
@@ -39,12 +40,18 @@ std::string kindText(const spng_ihdr& ihdr) {
 class Decoder {
  public:
   Decoder(const std::filesystem::path& path, std::size_t limit)
-      : path_(path), bytes_(io::readFileStart(path, limit)), context_(spng_ctx_new(0), spng_ctx_free) {
-    checkSignature();
-    spng_set_png_buffer(context_.get(), bytes_.data(), bytes_.size());
-    check(spng_get_ihdr(context_.get(), &ihdr_));
-    checkImageSize(path_, "", ihdr_.width, ihdr_.height);
+      : storage_(io::readFileStart(path, limit)),
+        picture_{path, "", storage_, 0, 0},
+        context_(spng_ctx_new(0), spng_ctx_free) {
+    begin();
   }
+  // The picture's bytes must outlive the decoder.
+  explicit Decoder(const io::EncodedPicture& picture)
+      : picture_(picture), context_(spng_ctx_new(0), spng_ctx_free) {
+    begin();
+  }
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
 
   const spng_ihdr& ihdr() const { return ihdr_; }
 
@@ -55,33 +62,41 @@ class Decoder {
 
   // Deflate cannot make more than 1032 bytes of one: a file this short need not cost us memory.
   void checkLength(std::size_t decoded) const {
-    if (decoded / 1100 > bytes_.size()) truncated();
+    if (decoded / 1100 > picture_.bytes.size()) truncated();
   }
 
  private:
+  void begin() {
+    checkSignature();
+    spng_set_png_buffer(context_.get(), picture_.bytes.data(), picture_.bytes.size());
+    check(spng_get_ihdr(context_.get(), &ihdr_));
+    io::checkPictureSize(picture_, ihdr_.width, ihdr_.height);
+  }
+
   void checkSignature() const {
     static constexpr std::array<char, 8> kSignature = {'\x89', 'P', 'N', 'G', '\r', '\n', '\x1a', '\n'};
-    if (bytes_.empty()) throw IoError(path_, "", "a PNG file", "an empty file");
-    const auto compared = static_cast<std::ptrdiff_t>(std::min(bytes_.size(), kSignature.size()));
-    if (!std::equal(bytes_.begin(), bytes_.begin() + compared, kSignature.begin()))
-      throw IoError(path_, "", "a PNG file", "another signature");
+    const std::string_view bytes = picture_.bytes;
+    if (bytes.empty()) throw IoError(picture_.path, picture_.place, "a PNG file", "an empty file");
+    const auto compared = static_cast<std::ptrdiff_t>(std::min(bytes.size(), kSignature.size()));
+    if (!std::equal(bytes.begin(), bytes.begin() + compared, kSignature.begin()))
+      throw IoError(picture_.path, picture_.place, "a PNG file", "another signature");
   }
 
   void check(int code) const {
     if (code == SPNG_OK) return;
     if (code == SPNG_IO_EOF) truncated();
-    throw IoError(path_, "", "a sound PNG file", spng_strerror(code));
+    throw IoError(picture_.path, picture_.place, "a sound PNG file", spng_strerror(code));
   }
 
   [[noreturn]] void truncated() const {
     const std::string promised = ihdr_.width == 0 ? "a header"
                                                   : "pixels of a " + sizeText(ihdr_.width, ihdr_.height) +
                                                         " " + kindText(ihdr_) + " image";
-    throw IoError(path_, "byte " + std::to_string(bytes_.size()), promised, "the end of the file");
+    throw IoError(picture_.path, io::endPlace(picture_), promised, "the end of the file");
   }
 
-  const std::filesystem::path& path_;
-  std::string bytes_;
+  std::string storage_;  // of a file's own bytes
+  io::EncodedPicture picture_;
   Context context_;
   spng_ihdr ihdr_{};
 };
@@ -127,6 +142,11 @@ PngHeader readPngHeader(const std::filesystem::path& path) {
 
 Image<Rgb8> readPngRgb(const std::filesystem::path& path) {
   Decoder decoder(path, SIZE_MAX);
+  return decodeImage<Rgb8>(decoder, SPNG_FMT_RGB8);
+}
+
+Image<Rgb8> io::decodePng(const EncodedPicture& picture) {
+  Decoder decoder(picture);
   return decodeImage<Rgb8>(decoder, SPNG_FMT_RGB8);
 }
 

@@ -5,7 +5,11 @@
 
 #include "formats/camera_samples.h"
 #include "formats/colmap_sample.h"
+#include "formats/e57_writer.h"
+#include "formats/kitti_sample.h"
 #include "formats/numpy_sample.h"
+#include "formats/ptx_sample.h"
+#include "formats/sens_sample.h"
 #include "formats/tiny_scene.h"
 #include "formats/transforms_sample.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -42,6 +46,24 @@ void writeOpen3dJson(const std::filesystem::path& folder) {
 
 constexpr char kNumpy[] = "numpy", kTransforms[] = "transforms", kColmap[] = "colmap", kOpen3d[] = "open3d";
 constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet", kTum[] = "tum";
+void writePtxFile(const std::filesystem::path& folder) {
+  std::ofstream(folder / "scans.ptx") << ptxOfTwoScans();
+}
+
+template <E57Part (*make)(const View&)>
+void writeE57(const std::filesystem::path& folder) {
+  std::vector<E57Part> parts;
+  for (const View& view : make == loosePart ? tinyDenseScans() : tinySphericalViews())
+    parts.push_back(make(view));
+  std::ofstream(folder / "scans.e57", std::ios::binary) << e57File(parts);
+}
+
+template <int color, int depth>
+void writeSens(const std::filesystem::path& folder) {
+  std::ofstream(folder / "a.sens", std::ios::binary) << sensBytes(tinyRecording(color, depth));
+}
+
+constexpr char kPtx[] = "ptx";
 
 }  // namespace
 
@@ -70,6 +92,15 @@ const std::vector<Sample>& samples() {
       {"colmap", "rig", writeColmapRigSample, ""},
       {"open3d", "log", writeAs<kOpen3d>, ""},
       {"open3d", "json", writeOpen3dJson, ""},
+      {"ptx", "written", writeAs<kPtx>, ""},
+      {"ptx", "two_scans", writePtxFile, "scans.ptx"},
+      {"e57", "cartesian_floats", writeE57<cartesianPart>, "scans.e57"},
+      {"e57", "spherical_integers", writeE57<sphericalPart>, "scans.e57"},
+      {"e57", "loose_doubles", writeE57<loosePart>, "scans.e57"},
+      {"sens", "jpeg_zlib", writeSens<2, 1>, "a.sens"},
+      {"sens", "png_raw", writeSens<1, 0>, "a.sens"},
+      {"kitti", "poses_of_camera", writeKittiOfCamera, ""},
+      {"kitti", "poses_of_laser", writeKittiOfLaser, ""},
   };
   return all;
 }

@@ -95,6 +95,18 @@ std::vector<View> tinySphericalViews(std::size_t count) {
   return views;
 }
 
+std::vector<View> tinyDenseScans(std::size_t count) {
+  std::vector<View> views = tinySphericalViews(count);
+  for (View& view : views) {
+    const double degree = std::numbers::pi / 180, step = 0.4 * degree;
+    const Eigen::Vector3d middle = view.world_from_camera.inverse() * Eigen::Vector3d::Zero();
+    const double azimuth = std::atan2(middle.x(), middle.z());
+    view.projection = Spherical{60, 40, azimuth - 29.5 * step, step, 28 * degree, step};
+    render(view, 20.0);
+  }
+  return views;
+}
+
 void expectSameViews(const ViewSequence& found, const std::vector<View>& truth, double tolerance) {
   ASSERT_EQ(found.size(), truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -19,6 +19,10 @@ std::vector<View> tinyViews(std::size_t count = 3);
 /// full turn in azimuth and from 5 to 50 degrees below the horizon. Names as above.
 std::vector<View> tinySphericalViews(std::size_t count = 2);
 
+/// The same scanners with a pixel every 0.4 degrees, 60×40 of them towards the bumps: for formats of points
+/// that must be sorted into pixels.
+std::vector<View> tinyDenseScans(std::size_t count = 2);
+
 /// Fails unless the sequences have the same poses (1e-6), pinholes (1e-3 px) and depths (`tolerance`), valid
 /// at the same pixels. Names are not compared.
 void expectSameViews(const ViewSequence& found, const std::vector<View>& truth, double tolerance);
