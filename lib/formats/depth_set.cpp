@@ -8,6 +8,7 @@
 #include "formats/mvsnet_format.h"
 #include "formats/pcd.h"
 #include "formats/rgbd_folder.h"
+#include "formats/stanford.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -68,7 +69,8 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat()};
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),
+                                                      stanfordFormat()};
   return formats;
 }
 
