@@ -17,6 +17,9 @@ namespace {
 using test::messageOf;
 using test::TemporaryFolder;
 using test::writeText;
+using testing::AllOf;
+using testing::EndsWith;
+using testing::StartsWith;
 
 void writeRgbd(const std::filesystem::path& folder) {
   writePng(folder / "a.depth.png", Image<std::uint16_t>(4, 4, std::uint16_t{1000}));
@@ -55,27 +58,27 @@ TEST(DepthSet, NamedFormatOverridesWhatIsFound) {
     options.format = name;
     EXPECT_EQ(readDepthSet(folder.path(), options).format, name);
   }
-  options.format = "colmap";
-  EXPECT_EQ(messageOf<InvalidArgument>([&] { readDepthSet(folder.path(), options); }),
-            "format: expected one of rgbd, mvsnet, pcd, found 'colmap'");
+  options.format = "nonsense";
+  EXPECT_THAT(
+      messageOf<InvalidArgument>([&] { readDepthSet(folder.path(), options); }),
+      AllOf(StartsWith("format: expected one of rgbd, mvsnet, pcd, "), EndsWith(", found 'nonsense'")));
 }
 
 TEST(DepthSet, UnknownFolderSaysWhatEachFormatMissed) {
   const TemporaryFolder folder;
-  EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder.path()); }),
-            folder.path().string() +
-                ": expected a data set of a known format, found none (rgbd: no *.depth.png; mvsnet: no "
-                "cams/*_cam.txt and no depth_est/*.pfm; pcd: no *.pcd)");
+  EXPECT_THAT(messageOf<IoError>([&] { readDepthSet(folder.path()); }),
+              StartsWith(folder.path().string() +
+                         ": expected a data set of a known format, found none (rgbd: no *.depth.png; mvsnet: "
+                         "no cams/*_cam.txt and no depth_est/*.pfm; pcd: no *.pcd; "));
 }
 
 TEST(DepthSet, FileOrNothingInsteadOfAFolderIsSaid) {
   const TemporaryFolder folder;
   writeText(folder / "file", "x");
-  EXPECT_EQ(messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
-            (folder / "file").string() +
-                ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: not a "
-                "folder; pcd: not "
-                "a folder and no .pcd file)");
+  EXPECT_THAT(messageOf<IoError>([&] { readDepthSet(folder / "file"); }),
+              StartsWith((folder / "file").string() +
+                         ": expected a data set of a known format, found none (rgbd: not a folder; mvsnet: "
+                         "not a folder; pcd: not a folder and no .pcd file; "));
   ReadOptions options;
   for (const char* name : {"rgbd", "mvsnet"}) {
     options.format = name;

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/stanford_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/sensor/organised_points.h"
@@ -40,6 +41,9 @@ const std::vector<Sample>& samples() {
 #ifdef VDBFUSE_TEST_PCL
       {"pcd", "ascii", writePcd, ""},
 #endif
+      {"stanford", "ascii", writeStanfordAscii, ""},
+      {"stanford", "binary", writeStanfordBinary, "scans.conf"},
+      {"stanford", "pinhole", writeStanfordPinhole, ""},
   };
   return all;
 }
