@@ -36,6 +36,18 @@ RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::stri
   return rigidFromMatrix(pose);
 }
 
+RigidTransform poseFromQuaternion(const std::filesystem::path& path, const std::string& place,
+                                  const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation) {
+  constexpr double kTolerance = 0.01;
+  if (!(std::abs(rotation.norm() - 1) <= kTolerance))
+    throw IoError(path, place, "a quaternion of length 1", "length " + numberText(rotation.norm()));
+  if (!translation.allFinite()) throw IoError(path, place, "a finite position", "another one");
+  RigidTransform pose = RigidTransform::Identity();
+  pose.linear() = rotation.normalized().toRotationMatrix();
+  pose.translation() = translation;
+  return pose;
+}
+
 Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place,
                           const Eigen::MatrixXd& matrix, int width, int height) {
   const double tolerance = 1e-6 * std::abs(matrix(0, 0));

@@ -15,6 +15,11 @@ namespace vdbfuse {
 RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::string& place,
                               const Eigen::MatrixXd& matrix);
 
+/// The pose of a translation and a unit quaternion. Throws IoError at `place` when its length is off by more than
+/// a hundredth or a number is not finite.
+RigidTransform poseFromQuaternion(const std::filesystem::path& path, const std::string& place,
+                                  const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation);
+
 /// The camera of a 3×3 matrix (fx 0 cx; 0 fy cy; 0 0 1) for images of the given size. Throws IoError when the
 /// matrix is of another form.
 Pinhole pinholeFromMatrix(const std::filesystem::path& path, const std::string& place,

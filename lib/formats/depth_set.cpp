@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/arkit.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/pcd.h"
 #include "formats/rgbd_folder.h"
+#include "formats/scannet.h"
 #include "formats/stanford.h"
+#include "formats/tum.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -33,16 +36,32 @@ const DepthSetFormat& formatNamed(const std::string& name) {
   throw InvalidArgument("format", "expected one of " + formatNames(Ability::Read) + ", found '" + name + "'");
 }
 
+// What lies there, for someone who wonders why it is not known.
+std::string contentsOf(const std::filesystem::path& path) {
+  constexpr std::size_t kShown = 4;
+  if (!std::filesystem::is_directory(path)) return "a file of another kind";
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
+    const std::string name = entry.path().filename().string();
+    names.push_back(entry.is_directory(error) ? name + "/" : name);
+  }
+  std::sort(names.begin(), names.end());
+  std::string text = names.empty() ? "an empty folder" : "a folder of ";
+  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more" : text;
+}
+
 const DepthSetFormat& bestFormat(const std::filesystem::path& path) {
   const DepthSetFormat* best = nullptr;
   Detection::Fit best_fit = Detection::Fit::No;
-  std::string missing;
   for (const DepthSetFormat& format : depthSetFormats()) {
     const Detection found = format.detect(path);
     if (found.fit > best_fit) best = &format, best_fit = found.fit;
-    missing += (missing.empty() ? "" : "; ") + std::string(format.name) + ": " + found.reason;
   }
-  if (best == nullptr) throw IoError(path, "", "a data set of a known format", "none (" + missing + ")");
+  if (best == nullptr)
+    throw IoError(path, "", "a data set of a known format (vdbfuse formats PATH says what each lacks)",
+                  contentsOf(path));
   return *best;
 }
 
@@ -69,7 +88,8 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(), mvsnetFormat(), pcdFormat(),
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(),    tumFormat(),    scannetFormat(),
+                                                      arkitFormat(),   mvsnetFormat(), pcdFormat(),
                                                       stanfordFormat()};
   return formats;
 }

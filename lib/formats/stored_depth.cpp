@@ -57,4 +57,10 @@ Image<Rgb8> readPicture(const std::filesystem::path& path) {
   return path.extension() == ".png" ? readPngRgb(path) : readJpeg(path);
 }
 
+std::pair<int, int> pictureSize(const std::filesystem::path& path) {
+  if (path.extension() != ".png") return readJpegSize(path);
+  const PngHeader header = readPngHeader(path);
+  return {header.width, header.height};
+}
+
 }  // namespace vdbfuse

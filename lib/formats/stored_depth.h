@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "vdbfuse/formats/depth_set.h"
 
@@ -29,5 +30,8 @@ void requirePointOptions(const ReadOptions& options, DepthKind natural, const st
 
 /// A PNG or JPEG file, told apart by its extension.
 Image<Rgb8> readPicture(const std::filesystem::path& path);
+
+/// Its width and height, from its header.
+std::pair<int, int> pictureSize(const std::filesystem::path& path);
 
 }  // namespace vdbfuse

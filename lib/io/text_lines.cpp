@@ -10,11 +10,11 @@
 
 namespace vdbfuse {
 
-std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
-  constexpr std::size_t kMaxBytes = 1 << 20;
+std::vector<TextLine> readTextLines(const std::filesystem::path& path, std::size_t most_bytes) {
   const std::uint64_t size = io::fileSize(path);
-  if (size > kMaxBytes) {
-    throw IoError(path, "", "a text file of at most 1048576 bytes", std::to_string(size) + " bytes");
+  if (size > most_bytes) {
+    throw IoError(path, "", "a text file of at most " + std::to_string(most_bytes) + " bytes",
+                  std::to_string(size) + " bytes");
   }
   std::istringstream text(io::readFileBytes(path));
   std::vector<TextLine> lines;
@@ -25,6 +25,13 @@ std::vector<TextLine> readTextLines(const std::filesystem::path& path) {
     for (std::string word; words >> word;) line.words.push_back(word);
     if (!line.words.empty()) lines.push_back(std::move(line));
   }
+  return lines;
+}
+
+std::vector<TextLine> readListing(const std::filesystem::path& path) {
+  constexpr std::size_t kMostBytes = 64 << 20;
+  std::vector<TextLine> lines = readTextLines(path, kMostBytes);
+  std::erase_if(lines, [](const TextLine& line) { return line.words.front().front() == '#'; });
   return lines;
 }
 
@@ -39,18 +46,20 @@ std::string numberText(double value) {
   return text.str();
 }
 
+double finiteNumber(const std::filesystem::path& path, const TextLine& line, const std::string& word) {
+  // from_chars refuses the leading plus that printf("%+e") writes.
+  const char* begin = word.data() + (word.size() > 1 && word[0] == '+' ? 1 : 0);
+  const char* end = word.data() + word.size();
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value))
+    throw IoError(path, "line " + std::to_string(line.number), "a finite number", "'" + word + "'");
+  return value;
+}
+
 std::vector<double> finiteNumbers(const std::filesystem::path& path, const TextLine& line) {
   std::vector<double> numbers;
-  for (const std::string& word : line.words) {
-    // from_chars refuses the leading plus that printf("%+e") writes.
-    const char* begin = word.data() + (word.size() > 1 && word[0] == '+' ? 1 : 0);
-    const char* end = word.data() + word.size();
-    double value = 0;
-    const auto [stop, error] = std::from_chars(begin, end, value);
-    if (error != std::errc() || stop != end || !std::isfinite(value))
-      throw IoError(path, "line " + std::to_string(line.number), "a finite number", "'" + word + "'");
-    numbers.push_back(value);
-  }
+  for (const std::string& word : line.words) numbers.push_back(finiteNumber(path, line, word));
   return numbers;
 }
 

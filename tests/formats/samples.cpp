@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "formats/camera_samples.h"
 #include "formats/stanford_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -30,13 +31,18 @@ void writePcd(const std::filesystem::path& folder) {
 }
 #endif
 
-constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet";
+constexpr char kRgbd[] = "rgbd", kMvsnet[] = "mvsnet", kTum[] = "tum";
 
 }  // namespace
 
 const std::vector<Sample>& samples() {
   static const std::vector<Sample> all = {
       {"rgbd", "written", writeAs<kRgbd>, ""},
+      {"tum", "written", writeAs<kTum>, ""},
+      {"tum", "icl_nuim", writeIclNuim, ""},
+      {"scannet", "exported", writeScannet, ""},
+      {"arkit", "polycam", writePolycam, ""},
+      {"arkit", "scanner_app", writeScannerApp, ""},
       {"mvsnet", "written", writeAs<kMvsnet>, ""},
 #ifdef VDBFUSE_TEST_PCL
       {"pcd", "ascii", writePcd, ""},

@@ -60,9 +60,12 @@ struct DepthReading {
 };
 
 struct DepthSet {
-  ViewSequence views;              ///< never empty
-  std::string format;              ///< name of the format it was read as
-  DepthReading reading;            ///< what was taken for granted
+  ViewSequence views;    ///< never empty
+  std::string format;    ///< name of the format it was read as
+  DepthReading reading;  ///< what was taken for granted
+  /// Of each view: the frame that the pose on disk speaks of, from the camera's (scanners with z up, OpenGL's
+  /// axes). Empty: the camera's own.
+  std::vector<RigidTransform> stored_from_camera;
   std::vector<std::string> notes;  ///< what a person should know: things left out, things corrected
 };
 
