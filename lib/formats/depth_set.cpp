@@ -8,6 +8,7 @@
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
 #include "formats/pcd.h"
+#include "formats/points.h"
 #include "formats/rgbd_folder.h"
 #include "formats/scannet.h"
 #include "formats/stanford.h"
@@ -88,9 +89,9 @@ std::vector<std::string> validate(const ReadOptions& options) {
 }
 
 const std::vector<DepthSetFormat>& depthSetFormats() {
-  static const std::vector<DepthSetFormat> formats = {rgbdFormat(),    tumFormat(),    scannetFormat(),
-                                                      arkitFormat(),   mvsnetFormat(), pcdFormat(),
-                                                      stanfordFormat()};
+  static const std::vector<DepthSetFormat> formats = {rgbdFormat(),     tumFormat(),    scannetFormat(),
+                                                      arkitFormat(),    mvsnetFormat(), pcdFormat(),
+                                                      stanfordFormat(), pointsFormat()};
   return formats;
 }
 

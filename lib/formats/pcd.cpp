@@ -69,13 +69,22 @@ DepthMap loadCloud(const Clouds& clouds, std::size_t index) {
   return view.map;
 }
 
+bool isOrganised(const fs::path& path) {
+  try {
+    io::readPcdHeader(path);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 Detection detect(const fs::path& path) {
-  if (!fs::is_directory(path))
-    return path.extension() == kSuffix ? Detection{Detection::Fit::Fully, "a .pcd file"}
-                                       : Detection{Detection::Fit::No, "not a folder and no .pcd file"};
-  const std::size_t clouds = filesEndingWith(path, kSuffix).size();
-  if (clouds == 0) return {Detection::Fit::No, "no *.pcd"};
-  return {Detection::Fit::Fully, counted(clouds, "cloud")};
+  if (!fs::is_directory(path) && path.extension() != kSuffix)
+    return {Detection::Fit::No, "not a folder and no .pcd file"};
+  const std::vector<fs::path> clouds = cloudsAt(path);
+  if (clouds.empty()) return {Detection::Fit::No, "no *.pcd"};
+  if (!isOrganised(clouds.front())) return {Detection::Fit::Partly, "clouds that are not organised"};
+  return {Detection::Fit::Fully, counted(clouds.size(), "cloud")};
 }
 
 }  // namespace

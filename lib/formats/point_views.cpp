@@ -102,10 +102,15 @@ std::optional<Projection> fitted(const PointImage& points) {
   return std::nullopt;
 }
 
-// As many pixels as points, over what holds points.
+// As many pixels as points, over what holds points; but not many times their number where these are few and
+// scattered.
 double naturalStep(const Extent& extent) {
-  const double step = std::sqrt(extent.solid_angle / static_cast<double>(extent.points));
-  return std::clamp(step, 1e-5, 5 * kDegree);
+  constexpr double kMostPixelsAPoint = 64;
+  const auto points = static_cast<double>(extent.points);
+  const double step = std::sqrt(extent.solid_angle / points),
+               least =
+                   std::sqrt(extent.azimuth_width * extent.elevation_height / (kMostPixelsAPoint * points));
+  return std::clamp(std::max(step, least), 1e-5, 5 * kDegree);
 }
 
 Spherical splatProjection(const Extent& extent, double step) {

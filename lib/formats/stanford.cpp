@@ -196,6 +196,7 @@ DepthSet readStanford(const fs::path& path, const ReadOptions& options) {
                        configuration.world_from_scan[i] * sensor.scan_from_camera, std::nullopt});
   }
   DepthSet set;
+  for (const ScanSensor& sensor : scans->sensors) set.stored_from_camera.push_back(sensor.scan_from_camera);
   addNotes(*scans, set.notes);
   set.reading = {"x y z, one point a pixel", std::nullopt, scans->scale(), "no vertex, or not finite",
                  "quaternion of scan_from_world and translation of world_from_scan"};
