@@ -7,6 +7,7 @@
 #include "formats/pcd_header.h"
 #include "formats/pcl_part.h"
 #include "formats/stored_depth.h"
+#include "io/file_bytes.h"
 #include "io/folder.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/sensor/organised_points.h"
@@ -69,10 +70,11 @@ DepthMap loadCloud(const Clouds& clouds, std::size_t index) {
   return view.map;
 }
 
-bool isOrganised(const fs::path& path) {
+// A sound header of a single row; what is broken is for the reader to say.
+bool isUnorganised(const fs::path& path) {
+  constexpr std::size_t kLongestHeader = 64 * 1024;
   try {
-    io::readPcdHeader(path);
-    return true;
+    return io::parsePcdLayout(path, io::readFileStart(path, kLongestHeader)).height < 2;
   } catch (const Error&) {
     return false;
   }
@@ -83,7 +85,7 @@ Detection detect(const fs::path& path) {
     return {Detection::Fit::No, "not a folder and no .pcd file"};
   const std::vector<fs::path> clouds = cloudsAt(path);
   if (clouds.empty()) return {Detection::Fit::No, "no *.pcd"};
-  if (!isOrganised(clouds.front())) return {Detection::Fit::Partly, "clouds that are not organised"};
+  if (isUnorganised(clouds.front())) return {Detection::Fit::Partly, "clouds that are not organised"};
   return {Detection::Fit::Fully, counted(clouds.size(), "cloud")};
 }
 

@@ -63,7 +63,8 @@ Columns plyColumns(const fs::path& path, std::string_view bytes, const Names& na
   const std::array<io::PlySelection, 1> wanted = {{{"vertex", names}}};
   const io::PlyHeader header = io::parsePlyHeader(path, bytes);
   Columns columns;
-  for (io::PlyColumn& column : io::readPlyTable(path, bytes, header, wanted).front()) {
+  auto table = io::readPlyTable(path, bytes, header, wanted);
+  for (io::PlyColumn& column : table.front()) {
     if (!column.ends.empty() || (!columns.empty() && column.values.size() != columns.front().size()))
       throw IoError(path, "element vertex", "single values of x, y and z", "lists");
     columns.push_back(std::move(column.values));

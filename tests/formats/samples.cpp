@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "formats/camera_samples.h"
+#include "formats/points_sample.h"
 #include "formats/stanford_sample.h"
 #include "formats/tiny_scene.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -50,6 +51,12 @@ const std::vector<Sample>& samples() {
       {"stanford", "ascii", writeStanfordAscii, ""},
       {"stanford", "binary", writeStanfordBinary, "scans.conf"},
       {"stanford", "pinhole", writeStanfordPinhole, ""},
+      {"points", "xyz_poses", writeXyzWithPoses, ""},
+      {"points", "pcd_trajectory", writePcdWithTrajectory, ""},
+      {"points", "ply_numbered_poses", writePlyWithNumberedPoses, ""},
+      {"points", "ply_sensors", writePlyWithSensors, "points.ply"},
+      {"points", "xyz_sensors", writeXyzWithSensors, "points.xyz"},
+      {"points", "pcd_sensors", writePcdWithSensors, "points.pcd"},
   };
   return all;
 }
