@@ -15,8 +15,8 @@ namespace vdbfuse {
 RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::string& place,
                               const Eigen::MatrixXd& matrix);
 
-/// The pose of a translation and a unit quaternion. Throws IoError at `place` when its length is off by more than
-/// a hundredth or a number is not finite.
+/// The pose of a translation and a unit quaternion. Throws IoError at `place` when its length is off by more
+/// than a hundredth or a number is not finite.
 RigidTransform poseFromQuaternion(const std::filesystem::path& path, const std::string& place,
                                   const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation);
 

@@ -13,10 +13,12 @@
 #include "formats/numpy.h"
 #include "formats/open3d.h"
 #include "formats/pcd.h"
+#include "formats/points.h"
 #include "formats/ptx.h"
 #include "formats/rgbd_folder.h"
 #include "formats/scannet.h"
 #include "formats/sens.h"
+#include "formats/stanford.h"
 #include "formats/transforms.h"
 #include "formats/tum.h"
 #include "vdbfuse/base/errors.h"
@@ -101,7 +103,7 @@ const std::vector<DepthSetFormat>& depthSetFormats() {
       // Stereo and networks.
       mvsnetFormat(), colmapFormat(), transformsFormat(), numpyFormat(),
       // Scanners.
-      pcdFormat(), ptxFormat(), e57Format(), kittiFormat()};
+      pcdFormat(), ptxFormat(), e57Format(), stanfordFormat(), kittiFormat(), pointsFormat()};
   return formats;
 }
 

@@ -50,8 +50,8 @@ Json readJsonFile(const std::filesystem::path& path) {
   }
 }
 
-std::optional<double> jsonNumber(const std::filesystem::path& path, const std::string& place, const Json& object,
-                                 const std::string& key) {
+std::optional<double> jsonNumber(const std::filesystem::path& path, const std::string& place,
+                                 const Json& object, const std::string& key) {
   if (!object.is_object()) throw IoError(path, place, "an object", kindText(object));
   const auto found = object.find(key);
   if (found == object.end() || found->is_null()) return std::nullopt;

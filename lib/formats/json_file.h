@@ -17,8 +17,8 @@ Json readJsonFile(const std::filesystem::path& path);
 
 /// The member `key` of an object as a finite number; nothing when it is absent. `place` names the object in
 /// errors. Throws IoError.
-std::optional<double> jsonNumber(const std::filesystem::path& path, const std::string& place, const Json& object,
-                                 const std::string& key);
+std::optional<double> jsonNumber(const std::filesystem::path& path, const std::string& place,
+                                 const Json& object, const std::string& key);
 
 /// The same, which must be there.
 double requireJsonNumber(const std::filesystem::path& path, const std::string& place, const Json& object,

@@ -7,6 +7,7 @@
 #include "formats/pcd_header.h"
 #include "formats/pcl_part.h"
 #include "formats/stored_depth.h"
+#include "io/file_bytes.h"
 #include "io/folder.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/sensor/organised_points.h"
@@ -69,13 +70,23 @@ DepthMap loadCloud(const Clouds& clouds, std::size_t index) {
   return view.map;
 }
 
+// A sound header of a single row; what is broken is for the reader to say.
+bool isUnorganised(const fs::path& path) {
+  constexpr std::size_t kLongestHeader = 64 * 1024;
+  try {
+    return io::parsePcdLayout(path, io::readFileStart(path, kLongestHeader)).height < 2;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 Detection detect(const fs::path& path) {
-  if (!fs::is_directory(path))
-    return path.extension() == kSuffix ? Detection{Detection::Fit::Fully, "a .pcd file"}
-                                       : Detection{Detection::Fit::No, "not a folder and no .pcd file"};
-  const std::size_t clouds = filesEndingWith(path, kSuffix).size();
-  if (clouds == 0) return {Detection::Fit::No, "no *.pcd"};
-  return {Detection::Fit::Fully, counted(clouds, "cloud")};
+  if (!fs::is_directory(path) && path.extension() != kSuffix)
+    return {Detection::Fit::No, "not a folder and no .pcd file"};
+  const std::vector<fs::path> clouds = cloudsAt(path);
+  if (clouds.empty()) return {Detection::Fit::No, "no *.pcd"};
+  if (isUnorganised(clouds.front())) return {Detection::Fit::Partly, "clouds that are not organised"};
+  return {Detection::Fit::Fully, counted(clouds.size(), "cloud")};
 }
 
 }  // namespace

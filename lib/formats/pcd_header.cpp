@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats/pcd_header.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -16,42 +17,48 @@ namespace {
 
 constexpr std::size_t kLongestHeader = 64 * 1024;
 
-struct Field {
-  std::string name;
-  std::int64_t size = 0, count = 1;
-  std::string type;
-};
-
 // Reads the lines of a header one by one; each method reads the rest of a line whose key has been taken.
 class HeaderReader {
  public:
   HeaderReader(const std::filesystem::path& path, std::string_view text) : path_(path), cursor_(path, text) {}
 
-  PcdHeader read() {
-    while (data_.empty()) readLine();
-    if (fields_.empty()) cursor_.failWith("FIELDS before DATA", "none");
-    for (const char* name : {"x", "y", "z"}) requireFloat(name);
-    if (header_.width < 2 || header_.height < 2) {
+  PcdLayout readAny() {
+    readLines();
+    for (const char* name : {"x", "y", "z"}) requireFloat(name, AnyFloat::Yes);
+    requirePoints();
+    return layout_;
+  }
+
+  PcdHeader readOrganised() {
+    readLines();
+    for (const char* name : {"x", "y", "z"}) requireFloat(name, AnyFloat::No);
+    if (std::min(layout_.width, layout_.height) < 2 ||
+        std::max(layout_.width, layout_.height) > kLargestSide) {
       cursor_.failWith("an organised cloud (WIDTH and HEIGHT above 1)",
-                       std::to_string(header_.width) + "x" + std::to_string(header_.height));
+                       std::to_string(layout_.width) + "x" + std::to_string(layout_.height));
     }
-    if (points_ && *points_ != pixels()) {
-      cursor_.failWith("POINTS " + std::to_string(pixels()) + " (WIDTH x HEIGHT)", std::to_string(*points_));
-    }
+    requirePoints();
     requireData();
-    return header_;
+    return {static_cast<int>(layout_.width), static_cast<int>(layout_.height), layout_.viewpoint};
   }
 
  private:
+  void readLines() {
+    while (layout_.data.empty()) readLine();
+    if (layout_.fields.empty()) cursor_.failWith("FIELDS before DATA", "none");
+    layout_.points = pixels();
+    layout_.data_begin = cursor_.position();
+  }
+
   void readLine() {
     const std::string_view key = cursor_.word();
     if (key.empty()) cursor_.fail("DATA", key);
     if (key == "FIELDS") return readFields();
-    if (key == "SIZE") return readEach([](Field& f, std::int64_t v) { f.size = v; });
-    if (key == "COUNT") return readEach([](Field& f, std::int64_t v) { f.count = v; });
+    if (key == "SIZE") return readEach([](PcdField& f, std::int64_t v) { f.size = v; });
+    if (key == "COUNT") return readEach([](PcdField& f, std::int64_t v) { f.count = v; });
     if (key == "TYPE") return readTypes();
-    if (key == "WIDTH") return void(header_.width = static_cast<int>(integer(kLargestSide)));
-    if (key == "HEIGHT") return void(header_.height = static_cast<int>(integer(kLargestSide)));
+    if (key == "WIDTH") return void(layout_.width = integer(kMostPoints));
+    if (key == "HEIGHT") return void(layout_.height = integer(kMostPoints));
     if (key == "POINTS") return void(points_ = integer(std::numeric_limits<std::int64_t>::max()));
     if (key == "VIEWPOINT") return readViewpoint();
     if (key == "DATA") return readData();
@@ -60,18 +67,18 @@ class HeaderReader {
   }
 
   void readFields() {
-    fields_.clear();
+    layout_.fields.clear();
     for (std::string_view name = cursor_.wordOnLine(); !name.empty(); name = cursor_.wordOnLine())
-      fields_.push_back({std::string(name), 0, 1, {}});
+      layout_.fields.push_back({std::string(name), 0, 1, {}});
   }
 
   template <class Set>
   void readEach(const Set& set) {
-    for (Field& field : fields_) set(field, integer(kLargestSide));
+    for (PcdField& field : layout_.fields) set(field, integer(kLargestSide));
   }
 
   void readTypes() {
-    for (Field& field : fields_) {
+    for (PcdField& field : layout_.fields) {
       const std::string_view type = cursor_.wordOnLine();
       if (type != "F" && type != "I" && type != "U") cursor_.fail("F, I or U", type);
       field.type = type;
@@ -94,33 +101,41 @@ class HeaderReader {
     if (!origin.allFinite() || !(std::abs(turn.norm() - 1) < kTolerance))
       cursor_.failWith("VIEWPOINT tx ty tz qw qx qy qz with a quaternion of length 1",
                        "length " + std::to_string(turn.norm()));
-    header_.viewpoint.linear() = turn.normalized().toRotationMatrix();
-    header_.viewpoint.translation() = origin;
+    layout_.viewpoint.linear() = turn.normalized().toRotationMatrix();
+    layout_.viewpoint.translation() = origin;
   }
 
   void readData() {
     const std::string_view data = cursor_.wordOnLine();
     if (data != "ascii" && data != "binary" && data != "binary_compressed")
       cursor_.fail("DATA ascii, binary or binary_compressed", data);
-    data_ = data;
+    layout_.data = data;
     cursor_.restOfLine();
   }
 
-  void requireFloat(const std::string& name) {
-    for (const Field& field : fields_) {
+  enum class AnyFloat { Yes, No };  // or only of four bytes
+  void requireFloat(const std::string& name, AnyFloat any) {
+    for (const PcdField& field : layout_.fields) {
       if (field.name != name) continue;
       if (field.type == "F" && field.size == 4 && field.count == 1) return;
+      if (field.type == "F" && field.size == 8 && field.count == 1 && any == AnyFloat::Yes) return;
       cursor_.failWith("the field " + name + " as one 4-byte float (SIZE 4, TYPE F)",
                        "SIZE " + std::to_string(field.size) + ", TYPE " + field.type);
     }
     cursor_.failWith("the field " + name, "none of that name");
   }
 
+  void requirePoints() const {
+    if (points_ && *points_ != pixels())
+      cursor_.failWith("POINTS " + std::to_string(pixels()) + " (WIDTH x HEIGHT)", std::to_string(*points_));
+  }
+
   // Only where the length follows from the header.
   void requireData() const {
-    if (data_ != "binary") return;
+    if (layout_.data != "binary") return;
     std::uint64_t point = 0;
-    for (const Field& field : fields_) point += static_cast<std::uint64_t>(field.size * field.count);
+    for (const PcdField& field : layout_.fields)
+      point += static_cast<std::uint64_t>(field.size * field.count);
     const std::uint64_t wanted = cursor_.position() + point * static_cast<std::uint64_t>(pixels());
     const std::uint64_t found = fileSize(path_);
     if (found < wanted)
@@ -128,22 +143,24 @@ class HeaderReader {
                     "the end of the file");
   }
 
-  std::int64_t pixels() const { return std::int64_t{header_.width} * header_.height; }
+  std::int64_t pixels() const { return layout_.width * layout_.height; }
 
-  static constexpr std::int64_t kLargestSide = 65535;
+  static constexpr std::int64_t kLargestSide = 65535, kMostPoints = std::numeric_limits<std::int32_t>::max();
   const std::filesystem::path& path_;
   TextCursor cursor_;
-  PcdHeader header_;
-  std::vector<Field> fields_;
+  PcdLayout layout_;
   std::optional<std::int64_t> points_;
-  std::string data_;
 };
 
 }  // namespace
 
+PcdLayout parsePcdLayout(const std::filesystem::path& path, std::string_view bytes) {
+  return HeaderReader(path, bytes).readAny();
+}
+
 PcdHeader readPcdHeader(const std::filesystem::path& path) {
   const std::string start = readFileStart(path, kLongestHeader);
-  return HeaderReader(path, start).read();
+  return HeaderReader(path, start).readOrganised();
 }
 
 }  // namespace vdbfuse::io

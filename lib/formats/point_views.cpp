@@ -126,7 +126,7 @@ std::optional<Projection> fitted(const PointImage& points) {
 // As many pixels as points, over what holds points; coarser where a stray point far from the others would
 // make that an image of emptiness.
 double naturalStep(const Extent& extent) {
-  constexpr double kMostPixelsPerPoint = 256, kSmallImage = 1 << 16;
+  constexpr double kMostPixelsPerPoint = 64, kSmallImage = 1 << 16;
   const auto points = static_cast<double>(extent.points);
   const double step = std::sqrt(extent.solid_angle / points);
   const double coarse = std::sqrt(extent.azimuth_width * extent.elevation_height /

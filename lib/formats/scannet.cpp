@@ -42,8 +42,7 @@ fs::path intrinsicsFile(const fs::path& folder) {
 Pinhole readCamera(const fs::path& path, int width, int height) {
   const std::vector<TextLine> lines = readTextLines(path);
   const int side = lines.size() == 3 ? 3 : 4;
-  const Eigen::MatrixXd matrix =
-      readMatrix(path, lines, 0, side, side, "a 4x4 or 3x3 matrix of intrinsics");
+  const Eigen::MatrixXd matrix = readMatrix(path, lines, 0, side, side, "a 4x4 or 3x3 matrix of intrinsics");
   return pinholeFromMatrix(path, linePlace(lines, 0), matrix.topLeftCorner(3, 3), width, height);
 }
 
@@ -54,7 +53,8 @@ RigidTransform readTransform(const fs::path& path) {
 
 // Nothing where the tracker had lost the camera and wrote infinities.
 std::optional<RigidTransform> readPose(const fs::path& path) {
-  if (!fs::exists(path)) throw IoError(path, "", "the pose of depth/" + path.stem().string() + ".png", "nothing of that name");
+  if (!fs::exists(path))
+    throw IoError(path, "", "the pose of depth/" + path.stem().string() + ".png", "nothing of that name");
   const std::vector<TextLine> lines = readTextLines(path);
   const auto lost = [](const std::string& word) {
     return word.find("inf") != word.npos || word.find("nan") != word.npos;
@@ -108,7 +108,8 @@ void addPicture(const fs::path& folder, const Cameras& cameras, Frame& frame) {
 
 Detection detect(const fs::path& path) {
   if (!fs::is_directory(path)) return {Detection::Fit::No, "not a folder"};
-  const std::size_t depths = depthNames(path).size(), poses = filesEndingWith(poseFolder(path), ".txt").size();
+  const std::size_t depths = depthNames(path).size(),
+                    poses = filesEndingWith(poseFolder(path), ".txt").size();
   if (depths == 0 || poses == 0) return {Detection::Fit::No, "no depth/*.png with pose/*.txt"};
   if (intrinsicsFile(path).empty())
     return {Detection::Fit::Partly, "depth/ and pose/, but no intrinsic/intrinsic_depth.txt"};
@@ -131,7 +132,8 @@ DepthSet read(const fs::path& path, const ReadOptions& options) {
     addPicture(path, cameras, frame);
     frames.push_back(std::move(frame));
   }
-  if (frames.empty() && lost > 0) throw IoError(path, "", "a finite pose", counted(lost, "pose") + " that are none");
+  if (frames.empty() && lost > 0)
+    throw IoError(path, "", "a finite pose", counted(lost, "pose") + " that are none");
   DepthSet set = setOfFrames(path, std::move(frames), {}, options);
   if (lost > 0) set.notes.push_back(counted(lost, "frame") + " whose pose is not finite left out");
   return set;
@@ -140,14 +142,12 @@ DepthSet read(const fs::path& path, const ReadOptions& options) {
 }  // namespace
 
 DepthSetFormat scannetFormat() {
-  return {"scannet",
-          "scenes as the exporter of ScanNet writes them",
+  return {"scannet", "scenes as the exporter of ScanNet writes them",
           "depth/0.png                     16 bit, millimetres (--depth-scale 0.001), z, 0 invalid\n"
           "pose/0.txt                      4x4 world_from_camera; infinite: left out\n"
           "intrinsic/intrinsic_depth.txt   4x4 or 3x3, for all frames\n"
           "color/0.jpg                     optional; camera in intrinsic/intrinsic_color.txt\n",
-          detect,
-          read};
+          detect, read};
 }
 
 }  // namespace vdbfuse

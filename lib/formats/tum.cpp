@@ -129,7 +129,8 @@ Pinhole cameraFor(const fs::path& folder, const fs::path& trajectory, const Read
                   (icl ? "ICL-NUIM recommend: 481.2, -480, 319.5, 239.5"
                        : "the TUM benchmark recommend: 525, 525, 319.5, 239.5") +
                   " (--intrinsics)");
-  return icl ? Pinhole{640, 480, 481.2, -480, 319.5, 239.5, {}} : Pinhole{640, 480, 525, 525, 319.5, 239.5, {}};
+  return icl ? Pinhole{640, 480, 481.2, -480, 319.5, 239.5, {}}
+             : Pinhole{640, 480, 525, 525, 319.5, 239.5, {}};
 }
 
 Detection detect(const fs::path& path) {
@@ -164,12 +165,12 @@ DepthSet read(const fs::path& path, const ReadOptions& options) {
     if (!frame.color.empty() && !fs::exists(frame.color)) frame.color.clear();
     frames.push_back(std::move(frame));
   }
-  if (frames.empty())
-    throw IoError(trajectory_path, "", "a pose within 0.02 s of a depth map", "none");
+  if (frames.empty()) throw IoError(trajectory_path, "", "a pose within 0.02 s of a depth map", "none");
   if (frames.size() < images.depth.size())
     notes.push_back(counted(images.depth.size() - frames.size(), "depth map") +
                     " without a pose within 0.02 s left out");
-  if (camera.fy < 0) notes.emplace_back("left-handed camera (fy below 0): the y axes of camera and world turned round");
+  if (camera.fy < 0)
+    notes.emplace_back("left-handed camera (fy below 0): the y axes of camera and world turned round");
   FrameFormat format;
   format.integer_scale = kStep;
   format.pose = "quaternion x y z w, world_from_camera, x right, y down, z forward";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ply_header.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "text_cursor.h"
@@ -62,6 +63,18 @@ std::size_t sizeOf(PlyType type) {
   return kSizes[static_cast<std::size_t>(type)];
 }
 
+const PlyElement* findElement(const PlyHeader& header, std::string_view name) {
+  const auto found = std::find_if(header.elements.begin(), header.elements.end(),
+                                  [&](const PlyElement& element) { return element.name == name; });
+  return found == header.elements.end() ? nullptr : &*found;
+}
+
+const PlyProperty* findProperty(const PlyElement& element, std::string_view name) {
+  const auto found = std::find_if(element.properties.begin(), element.properties.end(),
+                                  [&](const PlyProperty& property) { return property.name == name; });
+  return found == element.properties.end() ? nullptr : &*found;
+}
+
 PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view bytes) {
   PlyHeader header;
   TextCursor cursor(path, bytes);
@@ -79,7 +92,10 @@ PlyHeader parsePlyHeader(const std::filesystem::path& path, std::string_view byt
     } else if (keyword == "property") {
       if (header.elements.empty()) cursor.fail("an element before its properties", keyword);
       header.elements.back().properties.push_back(parseProperty(cursor));
-    } else if (keyword != "comment" && keyword != "obj_info") {
+    } else if (keyword == "obj_info") {
+      const std::string name(cursor.wordOnLine());
+      header.info[name] = cursor.wordOnLine();
+    } else if (keyword != "comment") {
       cursor.fail("a line of a PLY header", keyword);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,8 +32,13 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::Ascii;
   std::vector<PlyElement> elements;
-  std::size_t data_begin = 0;  ///< byte after the header
+  std::map<std::string, std::string> info;  ///< what `obj_info NAME VALUE` lines say; the last of a name
+  std::size_t data_begin = 0;               ///< byte after the header
 };
+
+/// The element or property of that name; null where there is none.
+const PlyElement* findElement(const PlyHeader& header, std::string_view name);
+const PlyProperty* findProperty(const PlyElement& element, std::string_view name);
 
 /// Reads the header only; `count`s are what the file says and checked by nobody yet. Throws IoError with the
 /// line.

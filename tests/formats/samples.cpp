@@ -8,8 +8,10 @@
 #include "formats/e57_writer.h"
 #include "formats/kitti_sample.h"
 #include "formats/numpy_sample.h"
+#include "formats/points_sample.h"
 #include "formats/ptx_sample.h"
 #include "formats/sens_sample.h"
+#include "formats/stanford_sample.h"
 #include "formats/tiny_scene.h"
 #include "formats/transforms_sample.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -101,6 +103,15 @@ const std::vector<Sample>& samples() {
       {"sens", "png_raw", writeSens<1, 0>, "a.sens"},
       {"kitti", "poses_of_camera", writeKittiOfCamera, ""},
       {"kitti", "poses_of_laser", writeKittiOfLaser, ""},
+      {"stanford", "ascii", writeStanfordAscii, ""},
+      {"stanford", "binary", writeStanfordBinary, "scans.conf"},
+      {"stanford", "pinhole", writeStanfordPinhole, ""},
+      {"points", "xyz_poses", writeXyzWithPoses, ""},
+      {"points", "pcd_trajectory", writePcdWithTrajectory, ""},
+      {"points", "ply_numbered_poses", writePlyWithNumberedPoses, ""},
+      {"points", "ply_sensors", writePlyWithSensors, "points.ply"},
+      {"points", "xyz_sensors", writeXyzWithSensors, "points.xyz"},
+      {"points", "pcd_sensors", writePcdWithSensors, "points.pcd"},
   };
   return all;
 }

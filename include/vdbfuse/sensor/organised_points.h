@@ -26,6 +26,20 @@ Pinhole fitPinhole(const PointImage& points);
 /// azimuth by column and elevation by row, as fitPinhole().
 Spherical fitSpherical(const PointImage& points);
 
+/// A sheet of laser light that was moved sideways, and where it stands.
+struct FittedPushBroom {
+  PushBroom sensor;
+  /// Origin of the sensor's frame in that of the points; its x is 0, and the axes of both are parallel.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double error_px = 0;  ///< root of the mean square of what remains between points and pixels
+};
+
+/// The push-broom sensor that sees every point at the point's pixel. Points are given in a frame whose axes
+/// are the sensor's (x right, y down, z forward), its origin anywhere: least squares of x by column and z,
+/// and of row = cy + fy (y - origin.y)/(z - origin.z) with an unknown origin. fy and x_step may be negative.
+/// Throws InvalidArgument as fitPinhole(), and when the rows do not converge behind the points.
+FittedPushBroom fitPushBroom(const PointImage& points);
+
 /// The view that pixels and points in the frame of `projection` make; depth is what the projection says of
 /// each point. Throws InvalidArgument when the image is not of the projection's size.
 View viewFromPoints(const PointImage& points, const Projection& projection,
