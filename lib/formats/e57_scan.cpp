@@ -71,8 +71,10 @@ std::optional<RigidTransform> poseOf(const Context& context, const xml_node& sca
   const xml_node pose = scan.child("pose");
   if (!pose) return std::nullopt;
   RigidTransform result = RigidTransform::Identity();
+  // No comma initialiser: it asserts when an exception leaves it half filled.
   if (const xml_node t = pose.child("translation"))
-    result.translation() << number(context, t, "x"), number(context, t, "y"), number(context, t, "z");
+    result.translation() =
+        Eigen::Vector3d(number(context, t, "x"), number(context, t, "y"), number(context, t, "z"));
   const xml_node r = pose.child("rotation");
   if (!r) return result;
   const Eigen::Quaterniond turn(number(context, r, "w"), number(context, r, "x"), number(context, r, "y"),

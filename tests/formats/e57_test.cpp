@@ -197,6 +197,11 @@ TEST(E57, BrokenXmlIsRefusedByTheNameOfItsElement) {
       "records");
   EXPECT_EQ(complaintAbout(">1</w>", ">2</w>"),
             ": data3D[0]/pose/rotation: expected a quaternion w x y z of length 1, found length 2");
+  EXPECT_EQ(complaintAbout(">1</w><x type=\"Float\"/>", ">1</w><x>inf    </x>   "),
+            ": data3D[0]/x: expected a finite number, found 'inf'");
+  EXPECT_EQ(complaintAbout("translation type=\"Structure\"><x type=\"Float\"/>",
+                           "translation                 ><x>?      </x>   "),
+            ": data3D[0]/x: expected a finite number, found '?'");
   EXPECT_EQ(complaintAbout(">1</w>", ">?</w>"), ": data3D[0]/w: expected a finite number, found '?'");
   EXPECT_EQ(complaintAbout("<colorRed type=\"Integer\"", "<colorRed type=\"Vector\" "),
             ": data3D[0]/prototype/colorRed: expected a field that is one number, found a Vector");
