@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "formats/image_writer.h"
 #include "formats/numpy.h"
-#include "io/npz.h"
+#include "io/npz_writer.h"
 
 namespace vdbfuse {
 namespace {

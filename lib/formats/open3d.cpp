@@ -127,6 +127,27 @@ std::vector<fs::path> picturesOf(const fs::path& folder, const std::vector<std::
   return pictures;
 }
 
+// `camera` counts before those of the trajectory.
+std::vector<Frame> framesOf(const fs::path& path, const std::vector<std::string>& depths,
+                            const fs::path& trajectory, const std::optional<Pinhole>& camera) {
+  const std::vector<TrajectoryEntry> entries =
+      isLog(trajectory) ? readLogTrajectory(trajectory) : readJsonTrajectory(trajectory);
+  const std::vector<const TrajectoryEntry*> association = associate(trajectory, entries, depths.size());
+  const std::vector<fs::path> pictures = picturesOf(path, depths);
+  std::vector<Frame> frames;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    if (association[i] == nullptr) continue;
+    Frame frame;
+    frame.header.name = fs::path(depths[i]).stem().string();
+    frame.header.projection = camera ? *camera : association[i]->camera.value_or(Pinhole());
+    frame.header.world_from_camera = association[i]->world_from_camera;
+    frame.depth = path / "depth" / depths[i];
+    frame.color = pictures[i];
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
 Detection detect(const fs::path& path) {
   using Fit = Detection::Fit;
   if (!fs::is_directory(path)) return {Fit::No, "not a folder"};
@@ -158,22 +179,10 @@ DepthSet readOpen3d(const fs::path& path, const ReadOptions& options) {
   if (!trajectory) throw IoError(path, "", "trajectory.log or trajectory.json", "neither");
   if (isLog(*trajectory) && !intrinsics && !options.intrinsics)
     throw IoError(path, "", "camera_intrinsic.json (or *intrinsic*.json), or --intrinsics", "none");
-  const std::vector<TrajectoryEntry> entries =
-      isLog(*trajectory) ? readLogTrajectory(*trajectory) : readJsonTrajectory(*trajectory);
-  const Pinhole camera = intrinsics && !options.intrinsics ? readOpen3dIntrinsic(*intrinsics) : Pinhole();
-  const std::vector<const TrajectoryEntry*> association = associate(*trajectory, entries, depths.size());
-  const std::vector<fs::path> pictures = picturesOf(path, depths);
-  std::vector<Frame> frames;
-  for (std::size_t i = 0; i < depths.size(); ++i) {
-    if (association[i] == nullptr) continue;
-    Frame frame;
-    frame.header.name = fs::path(depths[i]).stem().string();
-    frame.header.projection = intrinsics ? camera : association[i]->camera.value_or(Pinhole());
-    frame.header.world_from_camera = association[i]->world_from_camera;
-    frame.depth = path / "depth" / depths[i];
-    frame.color = pictures[i];
-    frames.push_back(std::move(frame));
-  }
+  std::optional<Pinhole> camera;
+  if (options.intrinsics) camera = Pinhole();
+  if (intrinsics && !camera) camera = readOpen3dIntrinsic(*intrinsics);
+  std::vector<Frame> frames = framesOf(path, depths, *trajectory, camera);
   if (frames.empty()) throw IoError(*trajectory, "", "the pose of a depth map", "none");
   const std::size_t left_out = depths.size() - frames.size();
   FrameFormat format;
