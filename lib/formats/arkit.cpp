@@ -5,7 +5,7 @@
 
 #include "formats/camera_text.h"
 #include "formats/frames.h"
-#include "formats/json_file.h"
+#include "formats/json_fields.h"
 #include "formats/stored_depth.h"
 #include "io/folder.h"
 #include "vdbfuse/base/errors.h"
@@ -35,33 +35,26 @@ std::vector<std::string> appFrames(const fs::path& folder) {
   return names;
 }
 
-// ARKit's camera looks along −z, with y up.
-RigidTransform fromArkit(const RigidTransform& world_from_arkit) {
-  RigidTransform flip = RigidTransform::Identity();
-  flip.linear().diagonal() << 1, -1, -1;
-  return world_from_arkit * flip;
+// Numbers of a matrix, row by row.
+Eigen::MatrixXd matrixOf(const JsonField& field, int rows, int columns) {
+  const Eigen::VectorXd numbers = field.numbers(static_cast<std::size_t>(rows * columns));
+  return numbers.reshaped<Eigen::RowMajor>(rows, columns);
 }
 
-RigidTransform polycamPose(const fs::path& path, const Json& json) {
+RigidTransform polycamPose(const fs::path& path, const JsonField& json) {
   Eigen::MatrixXd matrix(3, 4);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column)
-      matrix(row, column) =
-          requireJsonNumber(path, "", json, "t_" + std::to_string(row) + std::to_string(column));
+      matrix(row, column) = json.at("t_" + std::to_string(row) + std::to_string(column)).number();
   }
   return poseFromMatrix(path, "t_00 to t_23", matrix);
 }
 
-int pixels(const fs::path& path, const Json& json, const std::string& key) {
-  const double value = requireJsonNumber(path, "", json, key);
-  if (!(value >= 1 && value <= 65536)) throw IoError(path, key, "a number of pixels", std::to_string(value));
-  return static_cast<int>(value);
-}
-
-Pinhole polycamCamera(const fs::path& path, const Json& json) {
-  const auto number = [&](const char* key) { return requireJsonNumber(path, "", json, key); };
-  return {pixels(path, json, "width"),
-          pixels(path, json, "height"),
+Pinhole polycamCamera(const JsonField& json) {
+  constexpr int kLargestSide = 65536;
+  const auto number = [&](const char* key) { return json.at(key).number(); };
+  return {json.at("width").whole(1, kLargestSide),
+          json.at("height").whole(1, kLargestSide),
           number("fx"),
           number("fy"),
           number("cx"),
@@ -80,9 +73,9 @@ std::vector<Frame> polycamFrames(const fs::path& folder, std::size_t& without_de
     const fs::path depth = ifThere(root / "depth" / (name + ".png"));
     without_depth += depth.empty() ? 1 : 0;
     if (depth.empty()) continue;
-    const Json json = readJsonFile(cameras / file);
+    const JsonField json = JsonField::readFile(cameras / file);
     Frame frame;
-    frame.header = {name, polycamCamera(cameras / file, json), fromArkit(polycamPose(cameras / file, json))};
+    frame.header = {name, polycamCamera(json), polycamPose(cameras / file, json) * openGlFromCamera()};
     frame.depth = depth;
     frame.confidence = ifThere(root / "confidence" / (name + ".png"));
     frame.color = findPicture(root / (is_corrected ? "corrected_images" : "images"), name);
@@ -109,13 +102,14 @@ std::vector<Frame> appFramesOf(const fs::path& folder, std::size_t& without_dept
     without_depth += depth.empty() ? 1 : 0;
     if (depth.empty()) continue;
     const fs::path path = folder / (std::string(kFrame) + name + ".json");
-    const Json json = readJsonFile(path);
+    const JsonField json = JsonField::readFile(path);
     Frame frame;
     frame.header.name = name;
     frame.header.projection =
-        pinholeFromMatrix(path, "intrinsics", jsonMatrix(path, "", json, "intrinsics", 3, 3), width, height);
-    frame.header.world_from_camera = fromArkit(
-        poseFromMatrix(path, "cameraPoseARFrame", jsonMatrix(path, "", json, "cameraPoseARFrame", 4, 4)));
+        pinholeFromMatrix(path, "intrinsics", matrixOf(json.at("intrinsics"), 3, 3), width, height);
+    frame.header.world_from_camera =
+        poseFromMatrix(path, "cameraPoseARFrame", matrixOf(json.at("cameraPoseARFrame"), 4, 4)) *
+        openGlFromCamera();
     frame.depth = depth;
     frame.confidence = ifThere(folder / ("conf_" + name + ".png"));
     frame.color = findPicture(folder, std::string(kFrame) + name);
@@ -141,6 +135,7 @@ DepthSet read(const fs::path& path, const ReadOptions& options) {
   std::vector<Frame> frames =
       isPolycam(path) ? polycamFrames(path, without_depth) : appFramesOf(path, without_depth);
   FrameFormat format;
+  format.stored_from_camera = openGlFromCamera();
   format.pose = "4x4 world_from_camera, ARKit: x right, y up, z backward";
   DepthSet set = setOfFrames(path, std::move(frames), format, options);
   if (without_depth > 0)

@@ -36,6 +36,14 @@ RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::stri
   return rigidFromMatrix(pose);
 }
 
+RigidTransform readPoseFile(const std::filesystem::path& path, const std::string& expected) {
+  if (!std::filesystem::exists(path)) throw IoError(path, "", expected, "nothing of that name");
+  const std::vector<TextLine> lines = readListing(path);
+  const int rows = lines.size() == 3 ? 3 : 4;
+  return poseFromMatrix(path, linePlace(lines, 0),
+                        readMatrix(path, lines, 0, rows, 4, "a 4x4 or 3x4 pose matrix"));
+}
+
 RigidTransform poseFromQuaternion(const std::filesystem::path& path, const std::string& place,
                                   const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation) {
   constexpr double kTolerance = 0.01;

@@ -15,6 +15,10 @@ namespace vdbfuse {
 RigidTransform poseFromMatrix(const std::filesystem::path& path, const std::string& place,
                               const Eigen::MatrixXd& matrix);
 
+/// The pose in a text file of nothing but 3 or 4 rows of 4 numbers. `expected` names it in errors where there
+/// is no such file: "the pose of a.depth.png". Throws IoError.
+RigidTransform readPoseFile(const std::filesystem::path& path, const std::string& expected);
+
 /// The pose of a translation and a unit quaternion. Throws IoError at `place` when its length is off by more
 /// than a hundredth or a number is not finite.
 RigidTransform poseFromQuaternion(const std::filesystem::path& path, const std::string& place,

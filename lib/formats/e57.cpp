@@ -86,6 +86,7 @@ DepthSet readE57(const fs::path& path, const ReadOptions& options) {
         scan.world_from_scanner.value_or(RigidTransform::Identity()) * cameraFromScanner().inverse();
     views.headers.push_back(std::move(header));
   }
+  views.stored_from_camera.assign(views.headers.size(), cameraFromScanner().inverse());
   views.load = [source](std::size_t index) { return readE57Points(source->path, source->scans[index]); };
   views.stored = storedText(path, source->scans.front());
   views.invalid = "an invalid state other than 0, not finite";

@@ -126,6 +126,12 @@ Pinhole resized(const Pinhole& camera, int width, int height) {
   return result;
 }
 
+RigidTransform openGlFromCamera() {
+  RigidTransform flip = RigidTransform::Identity();
+  flip.linear().diagonal() << 1, -1, -1;
+  return flip;
+}
+
 void makeRightHanded(ViewHeader& header) {
   auto& camera = std::get<Pinhole>(header.projection);
   if (camera.fy >= 0) return;
@@ -155,6 +161,8 @@ DepthSet setOfFrames(const fs::path& input, std::vector<Frame> frames, const Fra
     }
     headers.push_back(frame.header);
   }
+  if (!format.stored_from_camera.matrix().isIdentity())
+    set.stored_from_camera.assign(frames.size(), format.stored_from_camera);
   addNotes(frames, set.notes);
   auto source = std::make_shared<Source>(Source{std::move(frames), format, options});
   set.views =

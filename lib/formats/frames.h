@@ -27,7 +27,12 @@ struct FrameFormat {
   double float_scale = 1.0;      ///< unit of floats
   DepthKind kind = DepthKind::Z;
   std::string pose = "4x4 world_from_camera, x right, y down, z forward";
+  /// DepthSet::stored_from_camera, the same for all.
+  RigidTransform stored_from_camera = RigidTransform::Identity();
 };
+
+/// Axes of OpenGL's cameras (x right, y up, z backward) from ours, and ours from them.
+RigidTransform openGlFromCamera();
 
 /// Reads the sizes of all images now, and their pixels when they are asked for. Cameras are brought to the
 /// size of their depth maps. Notes say for how many views there is colour, and where a principal point lies

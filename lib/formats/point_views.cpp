@@ -234,6 +234,7 @@ DepthSet setOfScans(const std::filesystem::path& input, ScanSource source, const
   DepthSet set;
   set.reading = {scans->source.stored, std::nullopt, options.depth_scale.value_or(1.0), scans->source.invalid,
                  scans->source.pose};
+  set.stored_from_camera = scans->source.stored_from_camera;
   if (const std::string note = splatNote(scans->projections); !note.empty()) set.notes.push_back(note);
   set.views =
       ViewSequence(std::move(headers), [scans](std::size_t index) { return loadScan(*scans, index); });

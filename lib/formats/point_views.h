@@ -54,6 +54,8 @@ struct ScanSource {
   std::string stored = "x y z";  ///< for DepthReading
   std::string invalid = "not finite";
   std::string pose;
+  /// DepthSet::stored_from_camera: one a scan, or none.
+  std::vector<RigidTransform> stored_from_camera;
 };
 
 /// Reads every scan once to find its sensor, and again when its depth map is asked for. A note says how many

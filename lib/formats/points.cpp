@@ -81,9 +81,8 @@ DepthSet readFolder(const fs::path& folder, const ReadOptions& options) {
   source.load = [folder, files, frames](std::size_t index) {
     return turned(fromScanner(folder / files[index]), frames[index]);
   };
-  DepthSet set = setOfScans(folder, std::move(source), options, "points");
-  set.stored_from_camera = frames;
-  return set;
+  source.stored_from_camera = frames;
+  return setOfScans(folder, std::move(source), options, "points");
 }
 
 SensorGroups groupsOf(const fs::path& path) {

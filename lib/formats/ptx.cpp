@@ -153,6 +153,7 @@ DepthSet readPtx(const fs::path& path, const ReadOptions& options) {
     scan.organised = readPtxPoints((*scans)[index].stored, (*scans)[index].camera_from_points);
     return scan;
   };
+  for (const Scan& scan : *scans) source.stored_from_camera.push_back(scan.camera_from_points.inverse());
   source.stored = "x y z as text";
   source.invalid = "0 0 0";
   source.pose = "4x4 matrix of row vectors, world_from_scanner transposed: x forward, y left, z up";

@@ -49,15 +49,6 @@ Pinhole readCamera(const std::filesystem::path& folder, const ReadOptions& optio
                            readMatrix(path, lines, 0, 3, 3, "a 3x3 matrix of intrinsics"), 0, 0);
 }
 
-RigidTransform readPose(const std::filesystem::path& path, const std::string& depth_name) {
-  if (!std::filesystem::exists(path))
-    throw IoError(path, "", "the pose of " + depth_name, "nothing of that name");
-  const std::vector<TextLine> lines = readTextLines(path);
-  const int rows = lines.size() == 3 ? 3 : 4;
-  return poseFromMatrix(path, linePlace(lines, 0),
-                        readMatrix(path, lines, 0, rows, 4, "a 4x4 or 3x4 pose matrix"));
-}
-
 Detection detect(const std::filesystem::path& path) {
   if (!std::filesystem::is_directory(path)) return {Detection::Fit::No, "not a folder"};
   const std::size_t depths = depthFiles(path).size();
@@ -93,7 +84,8 @@ DepthSet readRgbdFolder(const std::filesystem::path& path, const ReadOptions& op
     Frame frame;
     frame.header.name = file.substr(0, file.rfind(kDepthMark));
     frame.header.projection = camera;
-    frame.header.world_from_camera = readPose(path / (frame.header.name + std::string(kPoseSuffix)), file);
+    frame.header.world_from_camera =
+        readPoseFile(path / (frame.header.name + std::string(kPoseSuffix)), "the pose of " + file);
     frame.depth = path / file;
     frame.color = findPicture(path, frame.header.name + ".color");
     frames.push_back(std::move(frame));

@@ -15,13 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RigidTransform readPose(const fs::path& path) {
-  const std::vector<TextLine> lines = readListing(path);
-  const int rows = lines.size() == 3 ? 3 : 4;
-  return poseFromMatrix(path, linePlace(lines, 0),
-                        readMatrix(path, lines, 0, rows, 4, "a 4x4 or 3x4 pose matrix"));
-}
-
 RigidTransform poseOfLine(const fs::path& path, TextLine line) {
   line.words.erase(line.words.begin());
   const std::vector<double> v = finiteNumbers(path, line);
@@ -94,7 +87,7 @@ std::vector<RigidTransform> readScanPoses(const fs::path& folder, const std::vec
     if (path.empty())
       throw IoError(folder, "", "the pose of " + file + " (" + fs::path(file).stem().string() + ".pose.txt)",
                     "nothing of that name");
-    poses.push_back(readPose(path));
+    poses.push_back(readPoseFile(path, "the pose of " + file));
   }
   return poses;
 }

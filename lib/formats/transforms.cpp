@@ -97,9 +97,7 @@ Pinhole cameraOf(const FrameFields& fields, const fs::path& depth, const ReadOpt
 
 RigidTransform poseOf(const Context& context, const JsonField& frame) {
   const JsonField field = frame.at("transform_matrix");
-  RigidTransform pose = poseFromMatrix(context.file, field.place(), field.rows());
-  pose.linear() = pose.linear() * Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return pose;
+  return poseFromMatrix(context.file, field.place(), field.rows()) * openGlFromCamera();
 }
 
 fs::path pictureOf(const Context& context, const JsonField& frame) {
@@ -144,6 +142,7 @@ FrameFormat formatOf(const JsonField& root) {
   const double unit = scaleOr(root, "depth_unit_scale_factor", 0);
   format.float_scale = unit > 0 ? unit : 1.0;
   format.integer_scale = scaleOr(root, "integer_depth_scale", unit > 0 ? unit : 0.001);
+  format.stored_from_camera = openGlFromCamera();
   format.pose = "4x4 world_from_camera, x right, y up, z backward (OpenGL)";
   return format;
 }
