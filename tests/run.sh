@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # tests/run.sh [--all]: installs the Debian packages that are missing, builds with warnings as errors, runs all tests,
-# and those of the cheap modules once more under the address and undefined-behaviour sanitizers.
+# and those of the cheap modules once more under the address and undefined-behaviour sanitizers, and feeds damaged files
+# to the readers.
 #
 #   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
+#   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
 set -euo pipefail
 cd "$(dirname "$0")/.."
 all=no
@@ -15,6 +17,7 @@ case "${1:-}" in
 esac
 with_pcl=${VDBFUSE_WITH_PCL:-ON}
 jobs=$(nproc)
+fuzz_seconds=${VDBFUSE_FUZZ_SECONDS:-30}
 results=()
 failed=0
 
@@ -62,7 +65,7 @@ run_tests release build
 if [ "$all" = no ]; then
   # What does arithmetic of indices, and what reads files of others.
   build "Sanitizers on the cheap modules" build-asan asan -DVDBFUSE_WITH_PCL=OFF
-  modules=(base geometry sensor mincut mesh octree io)
+  modules=(base geometry sensor mincut mesh octree io formats)
   targets=()
   for module in "${modules[@]}"; do
     [ -d "tests/$module" ] && targets+=("vdbfuse_test_$module")
@@ -96,6 +99,15 @@ else
     results+=("names: FAILED")
     failed=$((failed + 1))
   fi
+fi
+
+step "Fuzzers of the readers, $fuzz_seconds s each"
+if tests/fuzz/run.sh "$fuzz_seconds"; then
+  results+=("fuzzers: nothing found")
+  total_passed=$((${total_passed:-0} + 1))
+else
+  results+=("fuzzers: FAILED")
+  failed=$((failed + 1))
 fi
 
 step "Results"

@@ -50,7 +50,8 @@ TEST(Info, TellsWhatIsInADataSet) {
             "confidence  none\n"
             "colour      0 views\n"
             "points      -0.625,-0.625,2 to 1.875,0.625,2\n"
-            "cameras     0,0,0 to 1,0,0\n");
+            "cameras     0,0,0 to 1,0,0\n"
+            "agreement   96 % of the points lie where other views see a surface\n");
 }
 
 TEST(Info, JsonHoldsTheSame) {
