@@ -13,9 +13,11 @@ import importlib
 import json
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 import numpy as np
 
@@ -246,6 +248,168 @@ def openimageio_writes(bench, truth, half):
     return bench.read(path), truth, HALF if half else FLOAT
 
 
+# --- PIL and numpy: frames of depth cameras ---------------------------------------------------------------------
+
+
+def steps_of(depth, step):
+    return np.round(depth / step).astype(np.uint16)
+
+
+def save_pngs(image, folder, depths, names, step):
+    folder.mkdir(exist_ok=True)
+    for name, depth in zip(names, depths):
+        image.fromarray(steps_of(depth, step)).save(folder / name)
+
+
+def pil_writes_rgbd(bench, truth):
+    image, path = needed("PIL.Image"), bench.folder()
+    save_pngs(image, path, truth.depth, [f"frame-{i:06d}.depth.png" for i in range(VIEWS)], 0.001)
+    np.savetxt(path / "camera-intrinsics.txt", truth.intrinsics[0])
+    for i in range(VIEWS):
+        np.savetxt(path / f"frame-{i:06d}.pose.txt", truth.pose[i])
+    return bench.read(path), truth, MILLIMETRE
+
+
+def pil_reads_rgbd(bench, truth):
+    image, path = needed("PIL.Image"), bench.write(truth, "rgbd")
+    depth = np.stack([np.asarray(image.open(f)) for f in sorted(path.glob("*.depth.png"))])
+    pose = np.stack([np.loadtxt(f) for f in sorted(path.glob("*.pose.txt"))])
+    k = np.loadtxt(path / "intrinsics.txt")
+    return Set(depth / 1000, np.tile(k, (VIEWS, 1, 1)), pose), truth, MILLIMETRE
+
+
+def quaternion(rotation):  # x y z w
+    w = np.sqrt(max(0, 1 + np.trace(rotation))) / 2
+    if w < 0.1:
+        values, vectors = np.linalg.eigh(quaternion_matrix(rotation))
+        return vectors[:, -1]
+    r = rotation
+    return np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], 4 * w * w]) / (4 * w)
+
+
+def quaternion_matrix(r):  # whose largest eigenvector is the quaternion (Bar-Itzhack 2000)
+    k = np.zeros((4, 4))
+    k[:3, :3] = r + r.T - np.trace(r) * np.eye(3)
+    k[:3, 3] = k[3, :3] = [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]]
+    k[3, 3] = np.trace(r)
+    return k
+
+
+def pil_writes_tum(bench, truth):
+    image, path = needed("PIL.Image"), bench.folder()
+    times = [round(1305031100.25 + i / 30, 6) for i in range(VIEWS)]
+    save_pngs(image, path / "depth", truth.depth, [f"{t:.6f}.png" for t in times], 0.0002)
+    (path / "depth.txt").write_text("".join(f"{t:.6f} depth/{t:.6f}.png\n" for t in times))
+    rows = [[t, *p[:3, 3], *quaternion(p[:3, :3])] for t, p in zip(times, truth.pose)]
+    np.savetxt(path / "groundtruth.txt", rows, fmt="%.9f", header="time tx ty tz qx qy qz qw")
+    k = truth.intrinsics[0]
+    camera = f"{k[0, 0]},{k[1, 1]},{k[0, 2]},{k[1, 2]}"
+    return bench.read(path, "--intrinsics", camera), truth, MILLIMETRE
+
+
+def pil_writes_scannet(bench, truth):
+    image, path = needed("PIL.Image"), bench.folder()
+    save_pngs(image, path / "depth", truth.depth, [f"{i}.png" for i in range(VIEWS)], 0.001)
+    for name in ("pose", "intrinsic"):
+        (path / name).mkdir()
+    k = np.eye(4)
+    k[:3, :3] = truth.intrinsics[0]
+    np.savetxt(path / "intrinsic/intrinsic_depth.txt", k)
+    for i in range(VIEWS):
+        np.savetxt(path / f"pose/{i}.txt", truth.pose[i])
+    return bench.read(path), truth, MILLIMETRE
+
+
+def pil_writes_polycam(bench, truth):
+    image, path = needed("PIL.Image"), bench.folder() / "keyframes"
+    path.mkdir()
+    save_pngs(image, path / "depth", truth.depth, [f"{i}.png" for i in range(VIEWS)], 0.001)
+    (path / "cameras").mkdir()
+    for i, (k, pose) in enumerate(zip(truth.intrinsics, truth.pose)):
+        camera = {f"t_{r}{c}": gl(pose)[r, c] for r in range(3) for c in range(4)}
+        camera.update(fx=k[0, 0], fy=k[1, 1], cx=k[0, 2], cy=k[1, 2], width=WIDTH, height=HEIGHT)
+        (path / f"cameras/{i}.json").write_text(json.dumps(camera))
+    return bench.read(path.parent), truth, MILLIMETRE
+
+
+def numpy_writes_sens(bench, truth):
+    path = bench.folder() / "a.sens"
+    k = np.eye(4, dtype="<f4")
+    k[:3, :3] = truth.intrinsics[0]
+    out = struct.pack("<IQ", 4, 4) + b"test" + k.tobytes() + np.eye(4, dtype="<f4").tobytes()
+    out += k.tobytes() + np.eye(4, dtype="<f4").tobytes()
+    out += struct.pack("<iiIIIIfQ", 0, 1, WIDTH, HEIGHT, WIDTH, HEIGHT, 1000.0, VIEWS)
+    for pose, depth, color in zip(truth.pose, truth.depth, truth.color):
+        packed = zlib.compress(steps_of(depth, 0.001).tobytes())
+        out += pose.astype("<f4").tobytes() + struct.pack("<QQQQ", 0, 0, color.nbytes, len(packed))
+        out += color.tobytes() + packed
+    path.write_bytes(out + struct.pack("<Q", 0))
+    return bench.read(path), truth, MILLIMETRE
+
+
+def numpy_writes_mvsnet(bench, truth):
+    path = bench.folder()
+    for name in ("cams", "depth_est"):
+        (path / name).mkdir()
+    for i, (k, pose) in enumerate(zip(truth.intrinsics, truth.pose)):
+        rows = [" ".join(repr(float(v)) for v in row) for row in np.linalg.inv(pose)]
+        rows = ["extrinsic", *rows, "", "intrinsic", *[" ".join(repr(float(v)) for v in row) for row in k]]
+        (path / f"cams/{i:08d}_cam.txt").write_text("\n".join([*rows, "", "0.5 0.01"]) + "\n")
+        header = f"Pf\n{WIDTH} {HEIGHT}\n-1.0\n".encode()
+        (path / f"depth_est/{i:08d}.pfm").write_bytes(header + truth.depth[i][::-1].astype("<f4").tobytes())
+    return bench.read(path), truth, FLOAT
+
+
+# --- points: scanners' axes are x forward, y left, z up ---------------------------------------------------------
+
+
+def scanner_points(truth, view):
+    """Points of one view in the axes of a scanner there, and world_from_scanner."""
+    y, x = np.nonzero(truth.depth[view])
+    rays = np.stack([x, y, np.ones_like(x)], axis=1) @ np.linalg.inv(truth.intrinsics[view]).T
+    points = rays * truth.depth[view][y, x][:, None]
+    camera_from_scanner = np.array([[0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1.0]])
+    return points @ camera_from_scanner[:3, :3], truth.pose[view] @ camera_from_scanner
+
+
+def median_off(bench, source):
+    """Median distance of what we read to the scene, in the largest angle between pixels times the distance."""
+    out = bench.convert(source, "ptx")
+    off = []
+    for file in sorted(out.glob("*.ptx")):
+        lines = file.read_text().splitlines()
+        matrix = np.array([[float(v) for v in line.split()] for line in lines[6:10]])
+        points = np.array([[float(v) for v in line.split()[:3]] for line in lines[10:]])
+        points = points[(points != 0).any(axis=1)]
+        off.append(distance_to_scene(points @ matrix[:3, :3] + matrix[3, :3]))
+    off = np.concatenate(off)
+    assert len(off) > 1000 and np.median(off) < 0.01, f"{len(off)} points, median {np.median(off):.1e} off"
+    return f"{np.median(off):.1e}"
+
+
+def open3d_writes_points(bench, truth, kind):
+    o3d, path = needed("open3d"), bench.folder()
+    for i in range(VIEWS):
+        points, pose = scanner_points(truth, i)
+        points = np.random.default_rng(i).permutation(points)
+        cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points))
+        o3d.io.write_point_cloud(str(path / f"{i}.{kind}"), cloud)
+        np.savetxt(path / f"{i}.pose.txt", pose)
+    return median_off(bench, path)
+
+
+def numpy_writes_kitti(bench, truth):
+    path = bench.folder()
+    (path / "velodyne").mkdir()
+    poses = []
+    for i in range(VIEWS):
+        points, pose = scanner_points(truth, i)
+        np.hstack([points, np.ones((len(points), 1))]).astype("<f4").tofile(path / f"velodyne/{i:06d}.bin")
+        poses.append(pose[:3].ravel())
+    np.savetxt(path / "poses.txt", poses)
+    return median_off(bench, path)
+
+
 # --- Open3D -----------------------------------------------------------------------------------------------------
 
 
@@ -363,12 +527,25 @@ def main():
         ("colmap", "they write", "model_converter, TXT", lambda: colmap_converts(bench, many, ["BIN", "TXT"])),
         ("colmap", "they read", "numpy", lambda: numpy_reads_colmap(bench, many)),
         ("colmap", "they read", "stereo_fusion", lambda: colmap_fuses(bench, one)),
+        ("rgbd", "they write", "PIL, numpy", lambda: pil_writes_rgbd(bench, one)),
+        ("rgbd", "they read", "PIL, numpy", lambda: pil_reads_rgbd(bench, one)),
+        ("tum", "they write", "PIL, numpy", lambda: pil_writes_tum(bench, one)),
+        ("scannet", "they write", "PIL, numpy", lambda: pil_writes_scannet(bench, one)),
+        ("arkit", "they write", "PIL, json", lambda: pil_writes_polycam(bench, many)),
+        ("sens", "they write", "numpy, zlib", lambda: numpy_writes_sens(bench, one)),
+        ("mvsnet", "they write", "numpy", lambda: numpy_writes_mvsnet(bench, many)),
+        ("points", "they write", "Open3D, PCD", lambda: open3d_writes_points(bench, one, "pcd")),
+        ("points", "they write", "Open3D, PLY", lambda: open3d_writes_points(bench, one, "ply")),
+        ("kitti", "they write", "numpy", lambda: numpy_writes_kitti(bench, one)),
     ]
     for part in parts:
         bench.report(*part)
     print(f"{'format':11} {'direction':11} {'other program':25} {'depth':>9} {'pose':>9} {'pixels':>9}  result")
     for name, direction, program, depth, pose, pixels, result in bench.rows:
         print(f"{name:11} {direction:11} {program:25} {depth:>9} {pose:>9} {pixels:>9}  {result}")
+    print("pcd: the Point Cloud Library writes what Pcd.* and Bridge.* of the unit tests read")
+    print("stanford: ../shared/data/bunny-scans against bun_zipper.ply, RealData.*")
+    print("no other program is at hand for: ptx, e57")
     if len(sys.argv) < 3:
         shutil.rmtree(work)
     sys.exit(any("FAILED" in row[-1] for row in bench.rows))
