@@ -32,11 +32,6 @@ std::vector<fs::path> cloudsAt(const fs::path& path) {
   return paths;
 }
 
-PointImage moved(PointImage points, const RigidTransform& b_from_a) {
-  for (Eigen::Vector3f& p : points) p = (b_from_a * p.cast<double>()).cast<float>();
-  return points;
-}
-
 std::optional<Pinhole> cameraOf(const PointImage& points) {
   try {
     return fitPinhole(points);

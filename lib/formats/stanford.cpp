@@ -84,11 +84,6 @@ RigidTransform scanFromSensor() {
   return result;
 }
 
-PointImage moved(PointImage points, const RigidTransform& b_from_a) {
-  for (Eigen::Vector3f& p : points) p = (b_from_a * p.cast<double>()).cast<float>();
-  return points;
-}
-
 template <class Fit>
 auto attempt(const Fit& fit, const PointImage& points) -> std::optional<decltype(fit(points))> {
   try {

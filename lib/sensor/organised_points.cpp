@@ -38,6 +38,11 @@ class LineFit {
 
 }  // namespace
 
+PointImage moved(PointImage points, const RigidTransform& b_from_a) {
+  for (Eigen::Vector3f& p : points) p = (b_from_a * p.cast<double>()).cast<float>();
+  return points;
+}
+
 PointImage noPoints(int width, int height) {
   return {width, height, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())};
 }

@@ -13,6 +13,9 @@ namespace vdbfuse {
 /// A point a pixel; non-finite where nothing was measured.
 using PointImage = Image<Eigen::Vector3f>;
 
+/// The same points in another frame.
+PointImage moved(PointImage points, const RigidTransform& b_from_a);
+
 /// An image of NaN.
 PointImage noPoints(int width, int height);
 
