@@ -219,6 +219,10 @@ ConventionCheck checkConvention(const ViewSequence& views,
   const std::vector<SampledView> samples = sampleViews(views, stored_from_camera, options);
   if (samples.size() < 2) return check;
   const double tolerance = options.tolerance * typicalSize(samples);
+  if (const double as_read = agreementUnder(samples, {}, tolerance); as_read >= options.enough) {
+    check.agreement = as_read;
+    return check;
+  }
   std::vector<RatedConvention> rated;
   for (const Convention& candidate : candidates()) rated.push_back({candidate, 0});
   ProgressStep step(progress, "conventions", rated.size());

@@ -80,6 +80,15 @@ TEST(Info, WarnsOfAWrongConventionAndNamesTheRightOne) {
   EXPECT_EQ(json["reading"]["kind"], "z");
 }
 
+TEST(Fuse, WarnsOfAWrongConventionBeforeItBegins) {
+  const TemporaryFolder folder;
+  writeScan(folder / "scan", "inverse");
+  const std::string arguments = quoted(folder / "scan") + " " + quoted(folder / "mesh.ply");
+  EXPECT_THAT(runTool("fuse " + arguments).err, HasSubstr("Try --fix-convention inverse\n"));
+  EXPECT_THAT(runTool("fuse " + arguments + " --overwrite --fix-convention auto").err,
+              testing::AllOf(HasSubstr("note: taken as inverse"), testing::Not(HasSubstr("warning"))));
+}
+
 TEST(Info, FixesTheConventionWhenAskedTo) {
   const TemporaryFolder folder;
   writeScan(folder / "scan", "inverse");

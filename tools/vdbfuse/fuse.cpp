@@ -215,12 +215,20 @@ JudgedScan judged(const DepthSet& set, Request& request, const Progress& progres
 // Looks at one view: data sets have pictures for all of them, or for none.
 bool hasPictures(const ViewSequence& views) { return !views.load(0).map.color.empty(); }
 
+// No other convention is tried where the views agree well enough.
+ConventionOptions quickCheck() {
+  ConventionOptions options;
+  options.enough = 0.6;
+  return options;
+}
+
 void fuse(Request request) {
   const ThreadLimit threads(request.threads);
   requireMeshFormat(request.output);
   for (const fs::path& path : {request.output, request.grids, request.json}) requireNew(path, request);
   resolve(request);
   const DepthSet set = readScan(request.input, request.sensor, request.quiet ? Words::Keep : Words::Print);
+  if (!request.quiet) warnOf(checkConvention(set.views, set.stored_from_camera, quickCheck()));
   const ProgressLine line(request.quiet);
   Reconstruction result =
       reconstruct(judged(set, request, line.progress()), request.reconstruct, line.progress());

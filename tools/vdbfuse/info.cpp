@@ -138,17 +138,6 @@ Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary&
   return json;
 }
 
-// Most bad fusions come from poses or depths that mean something else.
-void warn(const ConventionCheck& check) {
-  if (!check.better) return;
-  std::fprintf(
-      stderr,
-      "warning: the views disagree with each other (%.0f %% of the points agree). %.0f %% would, if %s.\n"
-      "         Try --fix-convention %s\n",
-      100 * *check.agreement, 100 * check.better->agreement, describe(check.better->convention).c_str(),
-      nameOf(check.better->convention).c_str());
-}
-
 void run(const InfoOptions& options) {
   if (!options.json.empty() && !options.overwrite) refuseExisting(options.json);
   const DepthSet set = readInput(options.input, options.read);
@@ -158,7 +147,7 @@ void run(const InfoOptions& options) {
   const ConventionCheck check = checkConvention(set.views, set.stored_from_camera);
   if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary, check));
   print(set, summary, check);
-  warn(check);
+  warnOf(check);
 }
 
 }  // namespace

@@ -67,6 +67,16 @@ DepthSet readInput(const std::filesystem::path& path, const ReadArguments& argum
   return set;
 }
 
+void warnOf(const ConventionCheck& check) {
+  if (!check.better) return;
+  std::fprintf(
+      stderr,
+      "warning: the views disagree with each other (%.0f %% of the points agree). %.0f %% would, if %s.\n"
+      "         Try --fix-convention %s\n",
+      100 * *check.agreement, 100 * check.better->agreement, describe(check.better->convention).c_str(),
+      nameOf(check.better->convention).c_str());
+}
+
 Json jsonOf(const ReadArguments& arguments) {
   Json json;
   json["format"] = arguments.format.empty() ? Json(nullptr) : Json(arguments.format);

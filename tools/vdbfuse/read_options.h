@@ -25,6 +25,10 @@ void addReadOptions(CLI::App& command, ReadArguments& arguments);
 /// A data set under the convention that was asked for, or found; a note says which.
 DepthSet readInput(const std::filesystem::path& path, const ReadArguments& arguments);
 
+/// Says on stderr that another convention would make the views agree, where there is one: most bad fusions
+/// come from poses or depths that mean something else.
+void warnOf(const ConventionCheck& check);
+
 /// "z", "range", "disparity" or "inverse", as on the command line.
 const char* nameOf(DepthKind kind);
 

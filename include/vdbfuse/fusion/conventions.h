@@ -65,6 +65,9 @@ struct ConventionOptions {
   /// one view sees (the diagonal of the box of its points, a twentieth left out at each side; median of the
   /// views).
   double tolerance = 0.015;
+  /// Where the views agree this well as they were read, no other reading is tried: the check then costs
+  /// hardly more than loading the views. 1: all are tried.
+  double enough = 1.0;
 };
 
 /// How well views agree under one reading.
