@@ -163,6 +163,7 @@ DepthSet readKitti(const fs::path& path, const ReadOptions& options) {
     header.world_from_camera = poses[i] * camera0_from_view;
     source.headers.push_back(std::move(header));
   }
+  source.sensors = ScanSource::Sensors::OneForAll;
   source.stored_from_camera.assign(poses.size(), camera0_from_view);
   source.load = [sweeps](std::size_t index) {
     return readSweep(sweeps->folder / (sweeps->names[index] + std::string(kSuffix)));

@@ -32,13 +32,13 @@ bool comesBefore(std::string_view a, std::string_view b) {
       a.remove_prefix(1), b.remove_prefix(1);
       continue;
     }
-    const auto takeNumber = [](std::string_view& text) {
+    const auto take_number = [](std::string_view& text) {
       text.remove_prefix(std::min(text.find_first_not_of('0'), text.size()));
       const std::string_view digits = text.substr(0, text.find_first_not_of("0123456789"));
       text.remove_prefix(digits.size());
       return digits;
     };
-    const std::string_view x = takeNumber(a), y = takeNumber(b);
+    const std::string_view x = take_number(a), y = take_number(b);
     if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
   }
   return a.size() < b.size();

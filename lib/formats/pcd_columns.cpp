@@ -23,18 +23,18 @@ double valueAt(const char* bytes) {
 using Reader = double (*)(const char*);
 
 Reader readerOf(const PcdField& field) {
-  const auto bySize = [&](Reader one, Reader two, Reader four, Reader eight) -> Reader {
+  const auto by_size = [&](Reader one, Reader two, Reader four, Reader eight) -> Reader {
     return field.size == 1   ? one
            : field.size == 2 ? two
            : field.size == 4 ? four
            : field.size == 8 ? eight
                              : nullptr;
   };
-  if (field.type == "F") return bySize(nullptr, nullptr, valueAt<float>, valueAt<double>);
+  if (field.type == "F") return by_size(nullptr, nullptr, valueAt<float>, valueAt<double>);
   if (field.type == "I")
-    return bySize(valueAt<std::int8_t>, valueAt<std::int16_t>, valueAt<std::int32_t>, valueAt<std::int64_t>);
-  return bySize(valueAt<std::uint8_t>, valueAt<std::uint16_t>, valueAt<std::uint32_t>,
-                valueAt<std::uint64_t>);
+    return by_size(valueAt<std::int8_t>, valueAt<std::int16_t>, valueAt<std::int32_t>, valueAt<std::int64_t>);
+  return by_size(valueAt<std::uint8_t>, valueAt<std::uint16_t>, valueAt<std::uint32_t>,
+                 valueAt<std::uint64_t>);
 }
 
 // Where a field lies in a point: its values before, and its bytes before.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 
 #include "formats/stored_depth.h"
@@ -178,6 +179,42 @@ DepthMap loadScan(const Scans& scans, std::size_t index) {
   return map;
 }
 
+Extent extentOf(std::span<const PointScan> scans) {
+  ExtentFinder finder;
+  for (const PointScan& scan : scans)
+    forEachPoint(scan, [&](const Eigen::Vector3f& p) { finder.add(directionOf(p)); });
+  const Extent extent = finder.extent();
+  if (extent.points == 0) throw InvalidArgument("scan", "expected points, found none that is finite");
+  return extent;
+}
+
+// An image that holds all scans, as fine as the finest of them.
+ScanProjection splatOf(std::span<const PointScan> scans, std::optional<double> splat_step) {
+  double step = 1;
+  for (const PointScan& scan : scans) step = std::min(step, naturalStep(extentOf({&scan, 1})));
+  return {splatProjection(extentOf(scans), splat_step.value_or(step)), ScanProjection::Origin::Splat};
+}
+
+std::vector<ScanProjection> projectionsOf(const std::filesystem::path& input, const ScanSource& source,
+                                          const ReadOptions& options) {
+  constexpr std::size_t kEnough = 8;
+  const std::size_t count = source.headers.size();
+  std::vector<ScanProjection> result;
+  try {
+    if (source.sensors == ScanSource::Sensors::OneForAll && count > kEnough) {
+      std::vector<PointScan> some;
+      for (std::size_t k = 0; k < kEnough; ++k) some.push_back(source.load(k * count / kEnough));
+      result.assign(count, projectionOfAll(some, options.splat_step));
+    }
+    while (result.size() < count)
+      result.push_back(projectionOf(source.load(result.size()), options.splat_step));
+  } catch (const InvalidArgument& error) {
+    throw IoError(input, "scan " + source.headers[result.size() % count].name, "points that make a depth map",
+                  error.what());
+  }
+  return result;
+}
+
 std::string splatNote(const std::vector<ScanProjection>& projections) {
   std::size_t count = 0;
   double finest = 0, coarsest = 0;
@@ -204,12 +241,11 @@ RigidTransform cameraFromScanner() {
 
 ScanProjection projectionOf(const PointScan& scan, std::optional<double> splat_step) {
   if (const auto projection = fitted(scan.organised)) return {*projection, ScanProjection::Origin::Fitted};
-  ExtentFinder finder;
-  forEachPoint(scan, [&](const Eigen::Vector3f& p) { finder.add(directionOf(p)); });
-  const Extent extent = finder.extent();
-  if (extent.points == 0) throw InvalidArgument("scan", "expected points, found none that is finite");
-  const double step = splat_step.value_or(naturalStep(extent));
-  return {splatProjection(extent, step), ScanProjection::Origin::Splat};
+  return splatOf({&scan, 1}, splat_step);
+}
+
+ScanProjection projectionOfAll(const std::vector<PointScan>& scans, std::optional<double> splat_step) {
+  return splatOf(scans, splat_step);
 }
 
 Image<float> depthOf(const PointScan& scan, const ScanProjection& found) {
@@ -223,14 +259,8 @@ DepthSet setOfScans(const std::filesystem::path& input, ScanSource source, const
   if (source.headers.empty()) throw IoError(input, "", "a scan", "none");
   auto scans = std::make_shared<Scans>(Scans{std::move(source), {}, options});
   std::vector<ViewHeader> headers = scans->source.headers;
-  for (std::size_t i = 0; i < headers.size(); ++i) {
-    try {
-      scans->projections.push_back(projectionOf(scans->source.load(i), options.splat_step));
-    } catch (const InvalidArgument& error) {
-      throw IoError(input, "scan " + headers[i].name, "points that make a depth map", error.what());
-    }
-    headers[i].projection = scans->projections.back().projection;
-  }
+  scans->projections = projectionsOf(input, scans->source, options);
+  for (std::size_t i = 0; i < headers.size(); ++i) headers[i].projection = scans->projections[i].projection;
   DepthSet set;
   set.reading = {scans->source.stored, std::nullopt, options.depth_scale.value_or(1.0), scans->source.invalid,
                  scans->source.pose};

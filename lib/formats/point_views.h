@@ -42,6 +42,10 @@ struct ScanProjection {
 /// its pixels. Throws InvalidArgument when no point is finite, or the image would have more than 2^26 pixels.
 ScanProjection projectionOf(const PointScan& scan, std::optional<double> splat_step);
 
+/// The spherical image for several scans of loose points by one scanner. REQUIRES: there are scans. Throws as
+/// above.
+ScanProjection projectionOfAll(const std::vector<PointScan>& scans, std::optional<double> splat_step);
+
 /// The depth map: at a fitted projection's pixels, or each pixel the nearest of the points that fall on it,
 /// at its own range.
 Image<float> depthOf(const PointScan& scan, const ScanProjection& found);
@@ -51,6 +55,8 @@ struct ScanSource {
   std::vector<ViewHeader> headers;  ///< names and poses; projections are set by setOfScans()
   /// Reads scan `index`. Called from several threads at once. Throws IoError.
   std::function<PointScan(std::size_t index)> load;
+  /// OneForAll: loose points of the same scanner, which a few of the scans tell as well as all of them would.
+  enum class Sensors { OneEach, OneForAll } sensors = Sensors::OneEach;
   std::string stored = "x y z";  ///< for DepthReading
   std::string invalid = "not finite";
   std::string pose;
@@ -58,9 +64,9 @@ struct ScanSource {
   std::vector<RigidTransform> stored_from_camera;
 };
 
-/// Reads every scan once to find its sensor, and again when its depth map is asked for. A note says how many
-/// were splatted, and with what step. Throws InvalidArgument for options that points do not have; IoError
-/// when a scan holds no point.
+/// Reads every scan once to find its sensor (of one scanner for all: eight, spread evenly), and again when
+/// its depth map is asked for. A note says how many were splatted, and with what step. Throws InvalidArgument
+/// for options that points do not have; IoError when a scan holds no point.
 DepthSet setOfScans(const std::filesystem::path& input, ScanSource source, const ReadOptions& options,
                     const std::string& format);
 

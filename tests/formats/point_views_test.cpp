@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 
@@ -60,6 +61,28 @@ TEST(PointViews, ScannersAxesBecomeOurs) {
   EXPECT_EQ(cameraFromScanner() * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1));
   EXPECT_EQ(cameraFromScanner() * Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(-1, 0, 0));
   EXPECT_EQ(cameraFromScanner() * Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, -1, 0));
+}
+
+TEST(PointViews, ScansOfOneScannerShareASensorThatAFewOfThemTell) {
+  ScanSource source = sourceOf(band(0, 90));
+  source.headers.resize(40, source.headers.front());
+  source.sensors = ScanSource::Sensors::OneForAll;
+  const auto reads = std::make_shared<int>(0);
+  source.load = [reads](std::size_t index) {
+    ++*reads;
+    return band(index < 20 ? 0 : 60, index < 20 ? 90 : 120);
+  };
+  const DepthSet set = setOfScans("in", source, {}, "test");
+  EXPECT_EQ(*reads, 8);
+  const auto sensor = std::get<Spherical>(set.views.header(0).projection);
+  EXPECT_EQ(std::get<Spherical>(set.views.header(39).projection), sensor);
+  EXPECT_NEAR(sensor.width * sensor.azimuth_step, 120 * kDegree, 3 * kDegree);
+  // All points of every scan fall into it.
+  for (const std::size_t index : {0, 39}) {
+    const Image<float> depth = set.views.load(index).map.depth;
+    EXPECT_GT(std::count_if(depth.begin(), depth.end(), [](float d) { return d > 0; }),
+              index < 20 ? 1700 : 1100);
+  }
 }
 
 TEST(PointViews, OrganisedScansOfATurningScannerAreExact) {

@@ -6,4 +6,4 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${1:?build folder}
 find lib tools -name '*.cpp' ! -path 'lib/pcl/*' -print0 |
-  xargs -0 -n 4 -P "$(nproc)" clang-tidy --quiet -p "$build"
+  xargs -0 -n 4 -P "$(nproc)" clang-tidy --quiet --extra-arg=-Wno-unknown-warning-option -p "$build"
