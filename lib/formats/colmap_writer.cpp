@@ -78,17 +78,17 @@ void addObservations(std::vector<SparsePoint>& points, const View& view, std::si
 std::vector<Image<float>> normalsOf(const View& view) {
   const Image<float>& depth = view.map.depth;
   std::vector<Image<float>> normals(3, Image<float>(depth.width(), depth.height(), 0.0F));
-  const auto isValid = [&](int x, int y) { return depth.contains(x, y) && depth(x, y) != kInvalidDepth; };
+  const auto is_valid = [&](int x, int y) { return depth.contains(x, y) && depth(x, y) != kInvalidDepth; };
   const auto point = [&](int x, int y) { return unproject(view.projection, x, y, depth(x, y)); };
   // Between the neighbours on both sides, where they are valid.
   const auto tangent = [&](int x, int y, int dx, int dy) -> Eigen::Vector3d {
-    const bool ahead = isValid(x + dx, y + dy), behind = isValid(x - dx, y - dy);
+    const bool ahead = is_valid(x + dx, y + dy), behind = is_valid(x - dx, y - dy);
     const Eigen::Vector3d end = ahead ? point(x + dx, y + dy) : point(x, y);
     return end - (behind ? point(x - dx, y - dy) : point(x, y));
   };
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
-      if (!isValid(x, y)) continue;
+      if (!is_valid(x, y)) continue;
       const Eigen::Vector3d ray = point(x, y).normalized();
       Eigen::Vector3d normal = tangent(x, y, 0, 1).cross(tangent(x, y, 1, 0));
       normal = normal.norm() > 0 ? normal.normalized() : -ray;

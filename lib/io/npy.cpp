@@ -113,9 +113,9 @@ class Dictionary {
 
 void setNumber(const Dictionary& dictionary, NpyHeader& header) {
   const std::string_view descr = dictionary.quoted("descr");
-  const auto isOneOf = [](char c, std::string_view all) { return all.find(c) != all.npos; };
-  const bool known = descr.size() == 3 && isOneOf(descr[0], "<>|=") && isOneOf(descr[1], "fiub") &&
-                     isOneOf(descr[2], "1248");
+  const auto is_one_of = [](char c, std::string_view all) { return all.find(c) != all.npos; };
+  const bool known = descr.size() == 3 && is_one_of(descr[0], "<>|=") && is_one_of(descr[1], "fiub") &&
+                     is_one_of(descr[2], "1248");
   if (known) {
     header.kind = descr[1];
     header.bytes = descr[2] - '0';

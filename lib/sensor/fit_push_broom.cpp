@@ -12,7 +12,7 @@ namespace vdbfuse {
 namespace {
 
 constexpr std::size_t kFewestPoints = 16;
-constexpr double kLargestError_px = 0.5;
+constexpr double kLargestErrorPx = 0.5;
 // Rows that meet further away than this many times the spread of the points are as good as parallel.
 constexpr double kFurthestCentre = 1000;
 
@@ -137,7 +137,7 @@ FittedPushBroom fitPushBroom(const PointImage& points) {
   placeRows(fitRows(samples, mean, spread), mean, spread, result);
   fitColumns(samples, mean, spread, result);
   result.error_px = errorOf(samples, result);
-  if (!validate(Projection(result.sensor)).empty() || !(result.error_px <= kLargestError_px))
+  if (!validate(Projection(result.sensor)).empty() || !(result.error_px <= kLargestErrorPx))
     throw InvalidArgument("points", "expected points of a sheet of light moved sideways, found them " +
                                         std::to_string(result.error_px) + " pixels off the best one");
   return result;

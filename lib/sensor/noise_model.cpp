@@ -126,8 +126,8 @@ std::vector<std::string> validate(const SensorModel& model) {
   std::vector<std::string> problems;
   if (!(model.far > model.near)) problems.emplace_back("[near, far] must be a range of depths");
   const NoiseLaw& law = model.noise;
-  const auto positiveAt = [&](double depth) { return !std::isfinite(depth) || law.at(depth) > 0; };
-  if (!(positiveAt(model.near) && positiveAt(model.far)) || law == NoiseLaw{})
+  const auto positive_at = [&](double depth) { return !std::isfinite(depth) || law.at(depth) > 0; };
+  if (!(positive_at(model.near) && positive_at(model.far)) || law == NoiseLaw{})
     problems.emplace_back("the noise scale must be positive");
   if (!(model.prior_decay >= 0)) problems.emplace_back("prior_decay must not be negative");
   return problems;

@@ -12,7 +12,7 @@ namespace vdbfuse {
 namespace {
 
 constexpr std::size_t kFewestPoints = 16;
-constexpr double kLargestError_px = 0.5;
+constexpr double kLargestErrorPx = 0.5;
 
 bool isSeen(const Eigen::Vector3f& point) { return point.allFinite() && point.z() > 0; }
 
@@ -68,7 +68,7 @@ Pinhole fitPinhole(const PointImage& points) {
     throw InvalidArgument("points",
                           "expected points of a camera (x right, y down, z forward), found none that fit");
   const double error_px = std::sqrt(across.meanSquareError() + down.meanSquareError());
-  if (!(error_px <= kLargestError_px))
+  if (!(error_px <= kLargestErrorPx))
     throw InvalidArgument("points", "expected points of a pinhole camera, found them " +
                                         std::to_string(error_px) + " pixels off the best one");
   return camera;
@@ -99,7 +99,7 @@ Spherical fitSpherical(const PointImage& points) {
   const double pixel = std::min(std::abs(scanner.azimuth_step), std::abs(scanner.elevation_step));
   const double error_px =
       std::sqrt(azimuths.meanSquareError() + elevations.meanSquareError()) / std::max(pixel, 1e-12);
-  if (!validate(Projection(scanner)).empty() || !(error_px <= kLargestError_px))
+  if (!validate(Projection(scanner)).empty() || !(error_px <= kLargestErrorPx))
     throw InvalidArgument("points", "expected points of a turning scanner, found them " +
                                         std::to_string(error_px) + " pixels off the best one");
   return scanner;
