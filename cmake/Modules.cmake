@@ -18,6 +18,11 @@ if(VDBFUSE_SANITIZE)
   target_link_options(vdbfuse_flags INTERFACE -fsanitize=${VDBFUSE_SANITIZE})
 endif()
 
+if(VDBFUSE_BUILD_FUZZERS)
+  # The name that libFuzzer's documentation asks for: checksums, which no random change gets past, do not matter.
+  target_compile_definitions(vdbfuse_flags INTERFACE FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
+endif()
+
 # The core library: every module adds its sources to it.
 add_library(vdbfuse)
 add_library(vdbfuse::vdbfuse ALIAS vdbfuse)
@@ -39,8 +44,6 @@ function(vdbfuse_module NAME)
   endforeach()
   set_property(GLOBAL PROPERTY VDBFUSE_DEPENDS_${NAME} ${arg_DEPENDS})
   list(TRANSFORM arg_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  set_property(GLOBAL PROPERTY VDBFUSE_SOURCES_${NAME} ${arg_SOURCES})
-  set_property(GLOBAL PROPERTY VDBFUSE_LINK_${NAME} ${arg_LINK})
   target_sources(vdbfuse PRIVATE ${arg_SOURCES})
   target_link_libraries(vdbfuse PRIVATE ${arg_LINK})
 endfunction()

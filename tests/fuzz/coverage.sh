@@ -4,8 +4,8 @@
 # first; needs the Debian package llvm.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-cmake --preset fuzz -B build-fuzz-coverage -DVDBFUSE_BUILD_TESTS=OFF -DVDBFUSE_BUILD_EXAMPLES=OFF \
-  -DVDBFUSE_FUZZ_COVERAGE=ON >/dev/null
+cmake --preset fuzz -B build-fuzz-coverage -DVDBFUSE_SANITIZE= \
+  -DCMAKE_CXX_FLAGS="-fprofile-instr-generate -fcoverage-mapping" >/dev/null
 cmake --build build-fuzz-coverage --target vdbfuse_fuzz -j "$(nproc)"
 fuzzer=build-fuzz-coverage/tests/fuzz/vdbfuse_fuzz
 for corpus in build-fuzz/corpus/*; do

@@ -7,9 +7,9 @@
 # are busy; that none takes 5 s otherwise is what DamagedFiles.* tests.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-seconds=${1:-30}
+seconds=${1:-30} # VDBFUSE_FUZZ_JOBS of them at a time; as many as there are processors
 [ $# -eq 0 ] || shift
-cmake --preset fuzz -DVDBFUSE_BUILD_TESTS=OFF -DVDBFUSE_BUILD_EXAMPLES=OFF >build-fuzz.log 2>&1 ||
+cmake --preset fuzz >build-fuzz.log 2>&1 ||
   { cat build-fuzz.log; exit 1; }
 rm build-fuzz.log
 cmake --build build-fuzz --target vdbfuse_fuzz -j "$(nproc)"
@@ -38,4 +38,4 @@ fuzz() {
 }
 export -f fuzz
 export fuzzer
-printf '%s\n' "${formats[@]}" | xargs -P "$(nproc)" -I{} bash -c "fuzz {} $seconds"
+printf '%s\n' "${formats[@]}" | xargs -P "${VDBFUSE_FUZZ_JOBS:-$(nproc)}" -I{} bash -c "fuzz {} $seconds"
