@@ -23,20 +23,20 @@ bool canBeAFileName(const std::string& name) {
                      [](unsigned char c) { return c > ' ' && c != '/' && c != '\\'; });
 }
 
-std::string eightDigits(std::size_t index) {
+}  // namespace
+
+std::string numberedName(std::size_t index, int digits) {
   std::ostringstream text;
-  text << std::setw(8) << std::setfill('0') << index;
+  text << std::setw(digits) << std::setfill('0') << index;
   return text.str();
 }
-
-}  // namespace
 
 std::vector<std::string> fileNames(const ViewSequence& views) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < views.size(); ++i) names.push_back(views.header(i).name);
   const bool all_usable = std::all_of(names.begin(), names.end(), canBeAFileName) &&
                           std::set<std::string>(names.begin(), names.end()).size() == names.size();
-  for (std::size_t i = 0; i < names.size() && !all_usable; ++i) names[i] = eightDigits(i);
+  for (std::size_t i = 0; i < names.size() && !all_usable; ++i) names[i] = numberedName(i, 8);
   return names;
 }
 

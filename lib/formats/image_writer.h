@@ -20,6 +20,9 @@ void forEachView(const ViewSequence& views, const Progress& progress,
 /// The names that forEachView() gives.
 std::vector<std::string> fileNames(const ViewSequence& views);
 
+/// "00000007" for digits = 8.
+std::string numberedName(std::size_t index, int digits);
+
 /// The one camera of all views. Throws InvalidArgument when they have several, when it is no pinhole or is
 /// distorted; `format` names what cannot hold it.
 Pinhole commonPinhole(const ViewSequence& views, const std::string& format);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
 #include <utility>
 
 #include "formats/image_writer.h"
@@ -13,13 +11,6 @@
 
 namespace vdbfuse {
 namespace {
-
-// Files are named by numbers of eight digits.
-std::string numberedName(std::size_t index) {
-  std::ostringstream text;
-  text << std::setw(8) << std::setfill('0') << index;
-  return text.str();
-}
 
 Pinhole checkedPinhole(const View& view) {
   const Pinhole camera = plainPinhole(view, "mvsnet");
@@ -48,7 +39,7 @@ MvsnetWriter::MvsnetWriter(std::filesystem::path folder) : folder_(std::move(fol
 
 void MvsnetWriter::add(const View& view) {
   const Pinhole camera = checkedPinhole(view);
-  const std::string stem = numberedName(count_);
+  const std::string stem = numberedName(count_, 8);
   const auto [low, high] = depthRange(view.map.depth);
   const std::string text = mvsnetCameraText(camera, view.world_from_camera, low, high);
   writePfm(folder_ / "depth_est" / (stem + ".pfm"), view.map.depth);

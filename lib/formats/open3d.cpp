@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "formats/frames.h"
@@ -21,41 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::array kDepthExtensions = {".png", ".exr", ".npy", ".pfm", ".tiff", ".tif"};
 constexpr std::array kPictureExtensions = {".png", ".jpg", ".jpeg"};
-
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
-
-// Runs of digits by value, the rest byte by byte.
-bool comesBefore(std::string_view a, std::string_view b) {
-  while (!a.empty() && !b.empty()) {
-    if (!isDigit(a[0]) || !isDigit(b[0])) {
-      if (a[0] != b[0]) return a[0] < b[0];
-      a.remove_prefix(1), b.remove_prefix(1);
-      continue;
-    }
-    const auto take_number = [](std::string_view& text) {
-      text.remove_prefix(std::min(text.find_first_not_of('0'), text.size()));
-      const std::string_view digits = text.substr(0, text.find_first_not_of("0123456789"));
-      text.remove_prefix(digits.size());
-      return digits;
-    };
-    const std::string_view x = take_number(a), y = take_number(b);
-    if (x != y) return x.size() != y.size() ? x.size() < y.size() : x < y;
-  }
-  return a.size() < b.size();
-}
-
-template <std::size_t count>
-std::vector<std::string> filesOf(const fs::path& folder, const std::array<const char*, count>& extensions) {
-  std::vector<std::string> names;
-  for (const char* extension : extensions) {
-    const std::vector<std::string> found = filesEndingWith(folder, extension);
-    names.insert(names.end(), found.begin(), found.end());
-  }
-  std::sort(names.begin(), names.end());
-  std::stable_sort(names.begin(), names.end(),
-                   [](const auto& a, const auto& b) { return comesBefore(a, b); });
-  return names;
-}
 
 // The first of `names` that is there, else the only file that ends with `suffix` and holds `part`; none when
 // there is none. Throws IoError when there are several.
@@ -113,7 +76,7 @@ std::vector<fs::path> picturesOf(const fs::path& folder, const std::vector<std::
   std::vector<fs::path> pictures(depths.size());
   for (const char* name : {"color", "image", "rgb"}) {
     const fs::path colors = folder / name;
-    const std::vector<std::string> files = filesOf(colors, kPictureExtensions);
+    const std::vector<std::string> files = filesInOrder(colors, kPictureExtensions);
     if (files.empty()) continue;
     bool has_same_names = false;
     for (std::size_t i = 0; i < depths.size(); ++i) {
@@ -151,7 +114,7 @@ std::vector<Frame> framesOf(const fs::path& path, const std::vector<std::string>
 Detection detect(const fs::path& path) {
   using Fit = Detection::Fit;
   if (!fs::is_directory(path)) return {Fit::No, "not a folder"};
-  const std::size_t depths = filesOf(path / "depth", kDepthExtensions).size();
+  const std::size_t depths = filesInOrder(path / "depth", kDepthExtensions).size();
   if (depths == 0) return {Fit::No, "no depth/*.png"};
   try {
     const auto trajectory = findTrajectory(path);
@@ -164,16 +127,10 @@ Detection detect(const fs::path& path) {
   }
 }
 
-std::string sixDigits(std::size_t index) {
-  std::ostringstream text;
-  text << std::setw(6) << std::setfill('0') << index;
-  return text.str();
-}
-
 }  // namespace
 
 DepthSet readOpen3d(const fs::path& path, const ReadOptions& options) {
-  const std::vector<std::string> depths = filesOf(path / "depth", kDepthExtensions);
+  const std::vector<std::string> depths = filesInOrder(path / "depth", kDepthExtensions);
   if (depths.empty()) throw IoError(path, "", "depth maps (depth/*.png)", "none");
   const auto trajectory = findTrajectory(path), intrinsics = findIntrinsics(path);
   if (!trajectory) throw IoError(path, "", "trajectory.log or trajectory.json", "neither");
@@ -206,7 +163,7 @@ void writeOpen3d(const fs::path& folder, const ViewSequence& views, const WriteO
   createFolder(folder / "color");
   std::size_t index = 0;
   forEachView(views, progress, [&](const View& view, const std::string&) {
-    const std::string file = sixDigits(index++) + ".png";
+    const std::string file = numberedName(index++, 6) + ".png";
     writeDepthPng(folder / "depth" / file, view, options.depth_scale.value_or(kMetresPerMillimetre));
     writeColor(folder / "color" / file, view);
   });

@@ -2,7 +2,7 @@
 #include "formats/scannet.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "formats/camera_text.h"
 #include "formats/frames.h"
@@ -65,18 +65,9 @@ std::optional<RigidTransform> readPose(const fs::path& path) {
   return poseFromMatrix(path, linePlace(lines, 0), readMatrix(path, lines, 0, 4, 4, "a 4x4 pose matrix"));
 }
 
-// 2 before 10.
-bool naturalLess(const std::string& a, const std::string& b) {
-  return a.size() != b.size() ? a.size() < b.size() : a < b;
-}
-
 std::vector<std::string> depthNames(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const char* ending : {".png", ".exr", ".npy", ".pfm", ".tiff"}) {
-    for (const std::string& name : filesEndingWith(folder / "depth", ending)) names.push_back(name);
-  }
-  std::sort(names.begin(), names.end(), naturalLess);
-  return names;
+  constexpr std::array kExtensions = {".png", ".exr", ".npy", ".pfm", ".tiff"};
+  return filesInOrder(folder / "depth", kExtensions);
 }
 
 // Cameras of depth and pictures that all frames share.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "formats/frames.h"
 #include "formats/range_scan.h"
 #include "formats/stored_depth.h"
 #include "io/folder.h"
@@ -77,13 +78,6 @@ Configuration readConfiguration(const fs::path& path) {
   return result;
 }
 
-// Half a turn about x: a sensor that looks along -z, with y up.
-RigidTransform scanFromSensor() {
-  RigidTransform result = RigidTransform::Identity();
-  result.linear().diagonal() << 1, -1, -1;
-  return result;
-}
-
 template <class Fit>
 auto attempt(const Fit& fit, const PointImage& points) -> std::optional<decltype(fit(points))> {
   try {
@@ -112,7 +106,8 @@ ScanSensor upright(FittedPushBroom found, const RigidTransform& scan_from_camera
 }
 
 ScanSensor sensorOf(const fs::path& path, const PointImage& points) {
-  const std::array<RigidTransform, 2> frames = {scanFromSensor(), RigidTransform::Identity()};
+  // A sensor that looks along -z with y up, or along z.
+  const std::array<RigidTransform, 2> frames = {openGlFromCamera(), RigidTransform::Identity()};
   for (const RigidTransform& frame : frames) {
     if (const auto found = pinholeOf(moved(points, frame.inverse()), frame)) return *found;
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "formats/camera_text.h"
 #include "formats/frames.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,10 @@ std::vector<std::string> filesEndingWith(const std::filesystem::path& folder, st
 
 /// Whether there is a regular file of that name; false, too, for names that no file can have.
 bool isFile(const std::filesystem::path& path);
+
+/// The files that end with one of the suffixes, by name with runs of digits by value: 2 before 10.
+std::vector<std::string> filesInOrder(const std::filesystem::path& folder,
+                                      std::span<const char* const> suffixes);
 
 /// The first of `folder`/`stem` + one of .png, .jpg, .jpeg that exists; empty when none does.
 std::filesystem::path findPicture(const std::filesystem::path& folder, const std::string& stem);

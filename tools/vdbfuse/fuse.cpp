@@ -248,7 +248,7 @@ void addFuse(CLI::App& app, Action& action) {
   CLI::App& sub = *app.add_subcommand("fuse", "Turn depth maps with poses into a surface");
   sub.footer("Example: vdbfuse fuse scans/ mesh.ply --voxel 0.002");
   auto request = std::make_shared<Request>();
-  sub.add_option("INPUT", request->input, "Folder of depth maps")->required();
+  sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
   sub.add_option("OUT", request->output, "Mesh to write: .ply, .obj, .stl or .glb")->required();
   addGridOptions(sub, *request);
   const std::vector<CLI::Option*> judged_before =

@@ -65,7 +65,7 @@ void addJudge(CLI::App& app, Action& action) {
       "judgement.txt (noise, learned curve of the confidence, weights), and outliers/ for another run.\n\n"
       "Example: vdbfuse judge scan/ judged/ && vdbfuse fuse scan/ mesh.ply --judgement judged/");
   auto request = std::make_shared<Request>();
-  sub.add_option("INPUT", request->input, "Folder of depth maps")->required();
+  sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
   sub.add_option("OUTDIR", request->output, "Folder to write")->required();
   addSensorOptions(sub, request->sensor, request->options);
   sub.add_option("--json", request->json, "Write judgement.json, with times and memory, here as well");

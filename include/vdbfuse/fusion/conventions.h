@@ -87,7 +87,7 @@ struct ConventionCheck {
   std::optional<RatedConvention> better;
 };
 
-/// Compares a few views with each other under 200 readings: about a second. The result does not depend on the
+/// Compares a few views with each other under 210 readings: about a second. The result does not depend on the
 /// number of threads. Throws what ViewSequence::load() throws; Cancelled.
 ConventionCheck checkConvention(const ViewSequence& views,
                                 const std::vector<RigidTransform>& stored_from_camera = {},
