@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -28,10 +28,14 @@ using test::writeText;
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr int kTrials = 150;  // the sanitizers' own memory leaves no room for a limit
+constexpr double kHang_s = 40;
 #else
 constexpr int kTrials = 1000;
-#endif
 constexpr double kHang_s = 5;
+#endif
+
+// The process's own: other work on the machine does not count. What waits for ever is for ctest to stop.
+double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // No allocation above a gibibyte while it lives.
 class MemoryLimit {
@@ -140,11 +144,10 @@ TEST_P(DamagedFiles, AreReadOrRefused) {
     const fs::path& file = files[random.below(files.size())];
     const std::string good = readText(file);
     writeText(file, damaged(good, random));
-    const auto start = std::chrono::steady_clock::now();
+    const double start_s = processorSeconds();
     ASSERT_NO_THROW(refused += isRefused(folder / GetParam().input, GetParam().format) ? 1 : 0)
         << file << ", trial " << trial;
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    ASSERT_LT(seconds.count(), kHang_s) << file << ", trial " << trial;
+    ASSERT_LT(processorSeconds() - start_s, kHang_s) << file << ", trial " << trial;
     writeText(file, good);
   }
   // Most bytes of most files are values, and any value is one; but not all of them.
