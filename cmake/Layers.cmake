@@ -11,6 +11,7 @@ set(VDBFUSE_LAYERS
     2:mesh        # triangles, topology, closest point, winding number
     2:volume      # OpenVDB grids, traversal, files
     3:io          # files: images, arrays, meshes, text
+    3:stereo      # depth maps from photographs
     3:octree      # cells, grading, graph, labels
     3:evaluation  # accuracy, completeness, topology of a mesh against the truth
     3:synth       # synthetic scanner
