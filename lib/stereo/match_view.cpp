@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "stereo/plane_fit.h"
 #include "stereo/reference_level.h"
 #include "stereo/votes.h"
 #include "vdbfuse/base/parallel.h"
@@ -16,8 +18,8 @@ constexpr float kFirstStep = 1.0F;    // pixels of that level
 constexpr float kExactStep = 0.5F;    // the same where no surface sweeps follow
 constexpr float kFirstThreshold = 0.5F, kSurfaceThreshold = 0.3F;
 constexpr float kLeastDeviation = 1.5F / 255;  // of the brightness in a window with texture
-constexpr int kSmoothRadius = 3;
-constexpr float kSmoothScale = 1.5F;  // pixels of the level
+constexpr int kSmoothRadius = 4;
+constexpr float kSmoothScale = 0.75F;  // pixels of the level
 
 // One level of a match.
 struct Stage {
@@ -43,10 +45,35 @@ ImageMotion motionOf(const MatchInput& input, std::size_t partner, std::size_t l
                      (*other.levels)[level].camera, other.world_from_camera);
 }
 
+// Leaves out pixels whose rays miss the box.
+void leaveOutBeside(const Box& box, const Pinhole& camera, const RigidTransform& world_from_camera,
+                    Image<float>& inverse_spread) {
+  const Eigen::Vector3d eye = world_from_camera.translation();
+  parallelFor(static_cast<std::size_t>(camera.height), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < camera.width; ++x) {
+        if (inverse_spread(x, y) == 0) continue;
+        const Eigen::Vector3d ray = world_from_camera.linear() * unproject(camera, x, y, 1.0);
+        double from = 0, to = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+          const double a = (box.min()[axis] - eye[axis]) / ray[axis],
+                       b = (box.max()[axis] - eye[axis]) / ray[axis];
+          from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+        }
+        if (!(from <= to)) inverse_spread(x, y) = 0;
+      }
+    }
+  });
+}
+
 Stage stageOf(const MatchInput& input, int level, const StereoOptions& options, float threshold) {
   const auto at = static_cast<std::size_t>(level);
   Stage stage;
   stage.reference = referenceLevel((*input.reference.levels)[at], options.window_px / 2, kLeastDeviation);
+  if (options.domain)
+    leaveOutBeside(*options.domain, (*input.reference.levels)[at].camera, input.reference.world_from_camera,
+                   stage.reference.inverse_spread);
   for (std::size_t j = 0; j < input.partners.size(); ++j) {
     stage.pictures.push_back(&(*input.partners[j].levels)[at]);
     stage.motions.push_back(motionOf(input, j, at));
@@ -141,7 +168,9 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
   DepthLayer layer = before;
   for (float& score : layer.score) score *= 0.5F;
   const Image<float> base =
-      filled(smoothed(before, kSmoothRadius, kSmoothScale * stage.pixel), 0.5F * (stage.first + stage.last));
+      filled(planeFitted(before.inverse_depth, before.score,
+                         {kSmoothRadius, kSmoothScale * stage.pixel, 4 * kSmoothScale * stage.pixel, 3}),
+             0.5F * (stage.first + stage.last));
   forEachTile(stage.reference, [&](const TileRect& rect) {
     SweepTile tile;
     SweepMemory memory;
@@ -199,15 +228,11 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
   std::vector<DepthLayer> layers = planeSweep(stageOf(input, level, options, kFirstThreshold),
                                               is_exact ? kExactStep : kFirstStep, options.hypotheses);
   if (is_exact) return layers;
-  {
-    const Stage stage = stageOf(input, level, options, kSurfaceThreshold);
-    for (DepthLayer& layer : layers) layer = surfaceSweep(stage, layer, 4, 0.5F);
-  }
-  while (level > 0) {
-    --level;
+  for (bool is_first = true; level >= 0; --level, is_first = false) {
     const Stage stage = stageOf(input, level, options, kSurfaceThreshold);
     for (DepthLayer& layer : layers) {
-      layer = doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
+      if (!is_first)
+        layer = doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
       for (int sweep = 0; sweep < (level == 0 ? options.surface_sweeps : 1); ++sweep)
         layer = surfaceSweep(stage, layer, sweep == 0 ? 5 : 4, 0.5F);
     }
