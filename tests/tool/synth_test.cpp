@@ -79,7 +79,8 @@ TEST(Synth, LeavesNothingBehindWhenTheSceneCannotBeRead) {
   const TemporaryFolder folder;
   const ToolResult unknown = runTool(folder, "synth teapot scan");
   EXPECT_EQ(unknown.exit_code, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("'teapot' is neither sphere, box, torus, figure, ball nor a mesh file"));
+  EXPECT_THAT(unknown.err,
+              HasSubstr("'teapot' is neither sphere, box, torus, figure, occluder, ball nor a mesh file"));
   writeText(folder / "broken.ply", "ply\n");
   EXPECT_EQ(runTool(folder, "synth broken.ply scan").exit_code, 1);
   EXPECT_EQ(folder.entryCount(), 1u);

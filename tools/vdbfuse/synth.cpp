@@ -71,7 +71,8 @@ Scene loadScene(const Request& request) {
   const bool known = std::find(names.begin(), names.end(), request.scene) != names.end();
   if (!known && !fs::exists(request.scene))
     throw InvalidArgument(
-        "SCENE", "'" + request.scene + "' is neither sphere, box, torus, figure, ball nor a mesh file");
+        "SCENE",
+        "'" + request.scene + "' is neither sphere, box, torus, figure, occluder, ball nor a mesh file");
   Scene scene = known ? makeScene(request.scene)
                       : sceneFromMesh(fs::path(request.scene).stem().string(), readMesh(request.scene));
   scene.up = axisNamed(request.up);
@@ -268,7 +269,9 @@ void addSynth(CLI::App& app, Action& action) {
       "synth",
       "Makes a scan whose truth is known: depth maps (MVSNet layout), truth.ply, scene.json.\n"
       "  vdbfuse synth figure scan --arc ring --views 72 --size 320x240 --outliers 0.1");
-  command->add_option("scene", request->scene, "sphere, box, torus, figure, ball, or a closed mesh file")
+  command
+      ->add_option("scene", request->scene,
+                   "sphere, box, torus, figure, occluder, ball, or a closed mesh file")
       ->required();
   command->add_option("outdir", request->folder, "folder to write")->required();
   // The first option: those after it overrule the preset.
