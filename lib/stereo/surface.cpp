@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "vdbfuse/base/parallel.h"
+
+namespace vdbfuse::stereo {
+namespace {
+
+template <class Body>
+void forEachRow(int height, const Body& body) {
+  parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
+  });
+}
+
+Image<float> halvedMean(const Image<float>& full) {
+  Image<float> half((full.width() + 1) / 2, (full.height() + 1) / 2);
+  forEachRow(half.height(), [&](int y) {
+    for (int x = 0; x < half.width(); ++x) {
+      float sum = 0, count = 0;
+      for (int k = 0; k < 4; ++k) {
+        const int at_x = 2 * x + k % 2, at_y = 2 * y + k / 2;
+        if (!full.contains(at_x, at_y) || full(at_x, at_y) == 0) continue;
+        sum += full(at_x, at_y), count += 1;
+      }
+      half(x, y) = count > 0 ? sum / count : 0.0F;
+    }
+  });
+  return half;
+}
+
+// The pixel of the half size that lies nearest, and its neighbour on the other side.
+struct Between {
+  int near, far;
+};
+Between between(int i, int size) {
+  const int near = i / 2;
+  return {near, std::clamp(near + (i % 2 == 0 ? -1 : 1), 0, size - 1)};
+}
+
+float linear(const Image<float>& half, Between x, Between y) {
+  return 0.5625F * half(x.near, y.near) + 0.1875F * (half(x.far, y.near) + half(x.near, y.far)) +
+         0.0625F * half(x.far, y.far);
+}
+
+void fillFrom(const Image<float>& half, Image<float>& full) {
+  forEachRow(full.height(), [&](int y) {
+    const Between rows = between(y, half.height());
+    for (int x = 0; x < full.width(); ++x)
+      if (full(x, y) == 0) full(x, y) = linear(half, between(x, half.width()), rows);
+  });
+}
+
+}  // namespace
+
+DepthLayer emptyLayer(int width, int height) {
+  const Image<float> zero(width, height);
+  return {zero, zero, zero, Image<std::uint8_t>(width, height), zero};
+}
+
+Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
+  std::vector<Image<float>> pyramid{inverse_depth};
+  while (pyramid.back().width() > 1 || pyramid.back().height() > 1)
+    pyramid.push_back(halvedMean(pyramid.back()));
+  if (pyramid.back()(0, 0) == 0) pyramid.back()(0, 0) = otherwise;
+  for (std::size_t level = pyramid.size() - 1; level > 0; --level)
+    fillFrom(pyramid[level], pyramid[level - 1]);
+  return std::move(pyramid.front());
+}
+
+Image<float> smoothed(const DepthLayer& layer, int radius, float scale) {
+  const Image<float>& from = layer.inverse_depth;
+  const int width = from.width(), height = from.height();
+  Image<float> result(width, height);
+  const float inverse_scale2 = 1 / (scale * scale);
+  forEachRow(height, [&](int y) {
+    std::vector<float> sum(static_cast<std::size_t>(width)), weight(static_cast<std::size_t>(width));
+    for (int dy = -radius; dy <= radius; ++dy) {
+      if (y + dy < 0 || y + dy >= height) continue;
+      for (int dx = -radius; dx <= radius; ++dx) {
+        const float* other = from.row(y + dy) + dx;
+        const float* score = layer.score.row(y + dy) + dx;
+        const float* own = from.row(y);
+        for (int x = std::max(0, -dx); x < std::min(width, width - dx); ++x) {
+          const float distance = other[x] - own[x];
+          const float far = 1 + distance * distance * inverse_scale2;
+          const float w = score[x] / (far * far);
+          sum[static_cast<std::size_t>(x)] += w * other[x], weight[static_cast<std::size_t>(x)] += w;
+        }
+      }
+    }
+    for (int x = 0; x < width; ++x) {
+      const float w = weight[static_cast<std::size_t>(x)];
+      if (from(x, y) != 0) result(x, y) = w > 0 ? sum[static_cast<std::size_t>(x)] / w : from(x, y);
+    }
+  });
+  return result;
+}
+
+DepthLayer doubled(const DepthLayer& layer, int width, int height, float step) {
+  DepthLayer result = emptyLayer(width, height);
+  const Image<float>& half = layer.inverse_depth;
+  forEachRow(height, [&](int y) {
+    const Between rows = between(y, half.height());
+    for (int x = 0; x < width; ++x) {
+      const Between columns = between(x, half.width());
+      const std::array<float, 4> around = {half(columns.near, rows.near), half(columns.far, rows.near),
+                                           half(columns.near, rows.far), half(columns.far, rows.far)};
+      const auto [low, high] = std::minmax_element(around.begin(), around.end());
+      const bool is_smooth = *low > 0 && *high - *low < step;
+      result.inverse_depth(x, y) = is_smooth ? linear(half, columns, rows) : around[0];
+      result.score(x, y) = layer.score(columns.near, rows.near);
+      result.second(x, y) = layer.second(columns.near, rows.near);
+      result.voters(x, y) = layer.voters(columns.near, rows.near);
+      result.spread2(x, y) = layer.spread2(columns.near, rows.near);
+    }
+  });
+  return result;
+}
+
+}  // namespace vdbfuse::stereo

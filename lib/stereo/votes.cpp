@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo/votes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vdbfuse::stereo {
+namespace {
+
+constexpr float kReach = 4.0F;   // of W, in sigma; beyond it is below 4e-4
+constexpr int kTableSteps = 64;  // a sigma
+constexpr int kShifts = 4;
+
+std::vector<float> gaussianTable() {
+  std::vector<float> table;
+  for (int i = 0; i <= static_cast<int>(kReach) * kTableSteps + 1; ++i) {
+    const double d = static_cast<double>(i) / kTableSteps;
+    table.push_back(static_cast<float>(std::exp(-d * d / 2)));
+  }
+  return table;
+}
+
+// Calls use(peak, weighted score) for the best peak of every partner.
+template <class Weight, class Use>
+void forEachVoter(const std::vector<Peak>& peaks, const Weight& weight, const Use& use) {
+  for (std::size_t i = 0; i < peaks.size();) {
+    const std::int32_t partner = peaks[i].partner;
+    const Peak* best = nullptr;
+    float best_score = 0;
+    for (; i < peaks.size() && peaks[i].partner == partner; ++i) {
+      const float score = peaks[i].score * weight(peaks[i].step);
+      if (score > best_score) best = &peaks[i], best_score = score;
+    }
+    if (best != nullptr) use(*best, best_score);
+  }
+}
+
+}  // namespace
+
+Voting::Voting(float sigma, std::size_t most_modes)
+    : sigma_(sigma), most_modes_(most_modes), table_(gaussianTable()) {}
+
+float Voting::weight(float distance) const {
+  const float place = std::abs(distance) / sigma_;
+  if (!(place < kReach)) return 0;
+  const float scaled = place * kTableSteps;
+  const auto at = static_cast<std::size_t>(scaled);
+  return table_[at] + (scaled - static_cast<float>(at)) * (table_[at + 1] - table_[at]);
+}
+
+float Voting::scoreAt(const std::vector<Peak>& peaks, float step) const {
+  float sum = 0;
+  forEachVoter(
+      peaks, [&](float k) { return weight(k - step); }, [&](const Peak&, float score) { sum += score; });
+  return sum;
+}
+
+Mode Voting::shifted(const std::vector<Peak>& peaks, float step) const {
+  Mode mode;
+  for (int i = 0; i < kShifts; ++i) {
+    float sum = 0, place = 0;
+    forEachVoter(
+        peaks, [&](float k) { return weight(k - step); },
+        [&](const Peak& peak, float score) {
+          sum += score * peak.curvature;
+          place += score * peak.curvature * peak.step;
+        });
+    if (sum > 0) step = place / sum;
+  }
+  float spread2 = 0, weights = 0;
+  forEachVoter(
+      peaks, [&](float k) { return weight(k - step); },
+      [&](const Peak& peak, float score) {
+        const float distance = peak.step - step;
+        mode.score += score;
+        if (std::abs(distance) > 2 * sigma_) return;
+        ++mode.voters;
+        spread2 += score * distance * distance, weights += score;
+      });
+  mode.step = step;
+  mode.spread2 = weights > 0 ? spread2 / weights : 0;
+  return mode;
+}
+
+const Modes& Voting::count(const std::vector<Peak>& peaks) {
+  modes_.clear();
+  candidates_.clear();
+  for (const Peak& peak : peaks) candidates_.emplace_back(scoreAt(peaks, peak.step), peak.step);
+  while (modes_.size() < most_modes_) {
+    const auto best = std::max_element(candidates_.begin(), candidates_.end(),
+                                       [](const auto& a, const auto& b) { return a.first < b.first; });
+    if (best == candidates_.end() || best->first <= 0) break;
+    const Mode mode = shifted(peaks, best->second);
+    for (auto& candidate : candidates_) {
+      if (std::abs(candidate.second - mode.step) < 3 * sigma_) candidate.first = 0;
+    }
+    best->first = 0;
+    modes_.push_back(mode);
+  }
+  return modes_;
+}
+
+}  // namespace vdbfuse::stereo

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the peaks of all partners to one depth: occlusion-robust voting (Hernández et al. 2007, sec. 3.1). A
+// partner that does not see the point votes elsewhere or not at all, so that occlusion is noise.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "stereo/sweep_kernels.h"
+
+namespace vdbfuse::stereo {
+
+/// W(d) = exp(−d²/(2·kVoteSigma²)), d in steps of half a pixel of the widest partner.
+inline constexpr float kVoteSigma = 2.0F;
+
+/// A mode of C(k) = Σ_j max_i S_ji W(k − k_ji): every partner votes once, with its best peak
+/// near k.
+struct Mode {
+  float step = 0;           ///< k, by mean shift
+  float score = 0;          ///< C(k); at most the number of partners
+  std::uint8_t voters = 0;  ///< partners with a peak within two sigma
+  float spread2 = 0;        ///< mean square distance of their peaks from k, in steps
+};
+
+/// What one pixel voted for, the best first; modes nearer than three sigma to a better one are left out.
+using Modes = std::vector<Mode>;
+
+class Voting {
+ public:
+  /// `sigma`: of W, in steps.
+  Voting(float sigma, std::size_t most_modes);
+
+  /// REQUIRES: peaks ordered by partner. The result lives until the next call.
+  const Modes& count(const std::vector<Peak>& peaks);
+
+ private:
+  float weight(float distance) const;
+  float scoreAt(const std::vector<Peak>& peaks, float step) const;
+  Mode shifted(const std::vector<Peak>& peaks, float step) const;
+
+  float sigma_;
+  std::size_t most_modes_;
+  std::vector<float> table_;
+  Modes modes_;
+  std::vector<std::pair<float, float>> candidates_;
+};
+
+}  // namespace vdbfuse::stereo
