@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "formats/image_writer.h"
@@ -8,6 +9,7 @@
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/io/pfm.h"
+#include "vdbfuse/io/png.h"
 
 namespace vdbfuse {
 namespace {
@@ -30,11 +32,20 @@ std::pair<float, float> depthRange(const Image<float>& depth) {
   return {low, high};
 }
 
+void writePicture(const std::filesystem::path& path, const Photograph& photograph) {
+  if (!photograph.color.empty()) return writePng(path, photograph.color);
+  const Image<float>& brightness = photograph.brightness;
+  Image<std::uint8_t> grey(brightness.width(), brightness.height());
+  std::transform(brightness.begin(), brightness.end(), grey.begin(), [](float b) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(b, 0.0f, 1.0f)));
+  });
+  writePng(path, grey);
+}
+
 }  // namespace
 
 MvsnetWriter::MvsnetWriter(std::filesystem::path folder) : folder_(std::move(folder)) {
   createFolder(folder_ / "cams");
-  createFolder(folder_ / "depth_est");
 }
 
 void MvsnetWriter::add(const View& view) {
@@ -42,6 +53,7 @@ void MvsnetWriter::add(const View& view) {
   const std::string stem = numberedName(count_, 8);
   const auto [low, high] = depthRange(view.map.depth);
   const std::string text = mvsnetCameraText(camera, view.world_from_camera, low, high);
+  createFolder(folder_ / "depth_est");
   writePfm(folder_ / "depth_est" / (stem + ".pfm"), view.map.depth);
   if (!view.map.confidence.empty()) {
     createFolder(folder_ / "confidence");
@@ -52,6 +64,19 @@ void MvsnetWriter::add(const View& view) {
     writeColor(folder_ / "images" / (stem + ".png"), view);
   }
   io::writeFileBytes(folder_ / "cams" / (stem + "_cam.txt"), text);
+  ++count_;
+}
+
+void MvsnetWriter::add(const Photograph& photograph) {
+  const std::vector<std::string> problems = validate(photograph);
+  if (!problems.empty()) throw InvalidArgument("photograph " + photograph.name, problems.front());
+  const std::string stem = numberedName(count_, 8);
+  const DepthInterval depth = photograph.depth.value_or(DepthInterval{});
+  createFolder(folder_ / "images");
+  writePicture(folder_ / "images" / (stem + ".png"), photograph);
+  io::writeFileBytes(
+      folder_ / "cams" / (stem + "_cam.txt"),
+      mvsnetCameraText(photograph.camera, photograph.world_from_camera, depth.near, depth.far));
   ++count_;
 }
 

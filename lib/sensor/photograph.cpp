@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/sensor/photograph.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -8,6 +9,13 @@
 #include "vdbfuse/geometry/distortion.h"
 
 namespace vdbfuse {
+
+Image<float> brightnessOf(const Image<Rgb8>& color) {
+  Image<float> brightness(color.width(), color.height());
+  std::transform(color.begin(), color.end(), brightness.begin(),
+                 [](const Rgb8& p) { return (0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2]) / 255.0f; });
+  return brightness;
+}
 
 std::vector<std::string> validate(const Photograph& photograph) {
   std::vector<std::string> problems = validate(Projection(photograph.camera));

@@ -69,7 +69,7 @@ bool contains(const SceneRegionShape& shape, const Vector3d& point) {
   return std::visit(Contains{point}, shape);
 }
 
-std::vector<std::string> sceneNames() { return {"sphere", "box", "torus", "figure", "ball"}; }
+std::vector<std::string> sceneNames() { return {"sphere", "box", "torus", "figure", "occluder", "ball"}; }
 
 Scene makeScene(const std::string& name, const SceneOptions& options) {
   if (!(options.cell > 0)) throw InvalidArgument("cell", "must be positive");

@@ -92,6 +92,42 @@ Shape torus() {
   return {distance, Box(-half, half), {{"hole", RegionSide::Outside, hole}}};
 }
 
+// Measures of the occluder: a row of posts before a wall that bends round them, on one floor.
+constexpr int kPosts = 9;
+constexpr double kPostRadius = 0.022, kPostPitch = 0.1, kPostY = -0.2, kPostTop = 0.3;
+constexpr double kBendRadius = 0.7, kBendY = -0.45, kWallThickness = 0.06;
+const Vector3d kFloorCenter{0, 0, -0.33}, kFloorHalf{0.5, 0.3, 0.03};
+const Vector3d kWallCenter{0, 0.15, 0}, kWallHalf{0.5, 0.15, 0.33};
+
+double postX(int i) { return (i - 0.5 * (kPosts - 1)) * kPostPitch; }
+
+double occluderDistance(const Vector3d& p) {
+  const double bend = std::abs(std::hypot(p.x(), p.y() - kBendY) - kBendRadius) - 0.5 * kWallThickness;
+  const double wall = std::max(bend, boxDistance(p, kWallCenter, kWallHalf));
+  const double nearest = std::clamp(std::round(p.x() / kPostPitch + 0.5 * (kPosts - 1)), 0.0, kPosts - 1.0);
+  const double x = postX(static_cast<int>(nearest));
+  const double post = capsuleDistance(p, {x, kPostY, kFloorCenter.z()}, {x, kPostY, kPostTop}, kPostRadius);
+  return std::min({wall, post, boxDistance(p, kFloorCenter, kFloorHalf)});
+}
+
+std::vector<SceneRegion> occluderRegions() {
+  constexpr double kInset = 0.015;
+  const Box behind(Vector3d(-0.3, kPostY + kPostRadius + kInset, -0.27), Vector3d(0.3, 0.1, 0.3));
+  const Box wall(Vector3d(-0.1, 0.235, -0.25), Vector3d(0.1, 0.26, 0.3));
+  std::vector<SceneRegion> regions = {{"gap", RegionSide::Outside, behind},
+                                      {"wall", RegionSide::Inside, wall}};
+  for (int i = 0; i < kPosts; ++i) {
+    const CylinderShape post{{postX(i), kPostY, -0.27}, {postX(i), kPostY, 0.28}, 0.5 * kPostRadius};
+    regions.push_back({"post " + std::to_string(i + 1), RegionSide::Inside, post});
+  }
+  return regions;
+}
+
+Shape occluder() {
+  const Box bounds(kFloorCenter - kFloorHalf, Vector3d(kWallHalf.x(), kFloorHalf.y(), kWallHalf.z()));
+  return {occluderDistance, bounds, occluderRegions()};
+}
+
 }  // namespace
 
 double boxDistance(const Vector3d& point, const Vector3d& center, const Vector3d& half_size) {
@@ -104,6 +140,7 @@ std::optional<Shape> shapeNamed(const std::string& name) {
   if (name == "box") return box();
   if (name == "torus") return torus();
   if (name == "figure") return figure();
+  if (name == "occluder") return occluder();
   return std::nullopt;
 }
 

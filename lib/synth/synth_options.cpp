@@ -33,6 +33,12 @@ std::vector<std::string> validate(const SynthOptions& o) {
   require(isShare(o.missing), "the share of missing pixels must lie in [0, 1]");
   require(o.arc != Arc::Room || o.background == Background::None,
           "a room has walls already: no wall behind it");
+  if (!o.photographs) return problems;
+  const PhotographOptions& p = *o.photographs;
+  require(p.gain >= 1 && std::isfinite(p.gain), "the gain must be at least 1");
+  require(p.bias >= 0 && std::isfinite(p.bias), "the bias must not be negative");
+  require(p.noise >= 0 && std::isfinite(p.noise), "the noise of the image must not be negative");
+  require(isShare(p.gloss), "the gloss must lie in [0, 1]");
   return problems;
 }
 

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/synth/synthetic_scan.h"
 
-#include <cmath>
-
 #include "cameras.h"
 #include "mistakes.h"
+#include "picture.h"
+#include "seen_surface.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
-#include "vdbfuse/mesh/ray_caster.h"
 
 namespace vdbfuse {
 namespace {
-
-using Eigen::Vector3d;
 
 std::string joined(const std::vector<std::string>& sentences) {
   std::string all;
@@ -26,49 +23,6 @@ const SynthOptions& checked(const SynthOptions& options) {
   return options;
 }
 
-struct Ray {
-  Vector3d origin, direction;  // direction has z = 1 in the camera: lengths along it are depths
-  Vector3d at(double depth) const { return origin + depth * direction; }
-};
-
-// Root of f between `outside` (f > 0) and `inside` (f < 0), by the Illinois variant of false position.
-template <class F>
-double rootBetween(const F& f, double outside, double inside) {
-  constexpr double kExact = 1e-9;
-  constexpr int kSteps = 40;
-  double f_outside = f(outside), f_inside = f(inside);
-  int last_side = 0;
-  double root = inside;
-  for (int i = 0; i < kSteps && std::abs(inside - outside) > kExact; ++i) {
-    root = (outside * f_inside - inside * f_outside) / (f_inside - f_outside);
-    const double value = f(root);
-    if (std::abs(value) < kExact) break;
-    const int side = value > 0 ? 1 : -1;
-    (side > 0 ? outside : inside) = root;
-    (side > 0 ? f_outside : f_inside) = value;
-    if (side == last_side) (side > 0 ? f_inside : f_outside) *= 0.5;
-    last_side = side;
-  }
-  return root;
-}
-
-// Moves a hit on the mesh onto the surface that the mesh stands for; keeps the mesh's answer where the ray
-// finds no change of sign close by, because it only grazes the surface.
-double refined(const SignedDistance& distance, const Ray& ray, double hit) {
-  const double reach = 0.01 / ray.direction.norm();
-  const auto f = [&](double depth) { return distance(ray.at(depth)); };
-  const double at_hit = f(hit);
-  if (at_hit > 0) return f(hit + reach) < 0 ? rootBetween(f, hit, hit + reach) : hit;
-  return f(hit - reach) > 0 ? rootBetween(f, hit - reach, hit) : hit;
-}
-
-// Depth at which a ray that starts inside leaves the sphere of the background.
-double wallDepth(const Ray& ray) {
-  const double a = ray.direction.squaredNorm(), b = ray.origin.dot(ray.direction);
-  const double c = ray.origin.squaredNorm() - kWallRadius * kWallRadius;
-  return (-b + std::sqrt(b * b - a * c)) / a;
-}
-
 }  // namespace
 
 struct SyntheticScan::Impl {
@@ -76,26 +30,26 @@ struct SyntheticScan::Impl {
       : options(checked(o)),
         scene(o.arc == Arc::Room ? inRoom(std::move(s)) : std::move(s)),
         headers(synth::placeCameras(scene, o)),
-        caster(scene.truth) {}
+        surface(scene, o.background) {}
 
   SynthOptions options;
   Scene scene;
   std::vector<ViewHeader> headers;
-  RayCaster caster;
+  synth::SeenSurface surface;
 
-  void renderRow(SyntheticView& view, int y) const {
-    const RigidTransform& pose = view.view.world_from_camera;
-    for (int x = 0; x < view.true_depth.width(); ++x) {
-      const Ray ray{pose.translation(), pose.linear() * unproject(view.view.projection, x, y, 1.0)};
-      const std::optional<RayHit> hit = caster.cast(ray.origin, ray.direction);
-      view.object(x, y) = hit ? 1 : 0;
-      if (hit) {
-        const double depth = scene.distance ? refined(scene.distance, ray, hit->distance) : hit->distance;
-        view.true_depth(x, y) = static_cast<float>(depth);
-      } else if (options.background == Background::Wall) {
-        view.true_depth(x, y) = static_cast<float>(wallDepth(ray));
-      }
-    }
+  // Fills `seen(x, y, point)` for every pixel that sees something.
+  template <class Seen>
+  void look(std::size_t index, const Seen& seen) const {
+    parallelFor(static_cast<std::size_t>(options.height), 8, [&](std::size_t begin, std::size_t end) {
+      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+        for (int x = 0; x < options.width; ++x)
+          if (const auto point = surface.see(synth::rayThrough(headers[index], x, y))) seen(x, y, *point);
+    });
+  }
+
+  Image<Rgb8> picture(std::size_t index) const {
+    return synth::takePicture(headers[index], scene, surface, *options.photographs, options.seed,
+                              Random(options.seed, ~index));
   }
 
   SyntheticView render(std::size_t index) const {
@@ -103,11 +57,28 @@ struct SyntheticScan::Impl {
     static_cast<ViewHeader&>(result.view) = headers[index];
     result.true_depth = Image<float>(options.width, options.height, kInvalidDepth);
     result.object = Image<std::uint8_t>(options.width, options.height);
-    parallelFor(static_cast<std::size_t>(options.height), 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t y = begin; y < end; ++y) renderRow(result, static_cast<int>(y));
+    look(index, [&](int x, int y, const synth::SeenPoint& point) {
+      result.true_depth(x, y) = static_cast<float>(point.depth);
+      result.object(x, y) = point.triangle ? 1 : 0;
     });
     synth::measure(result, options, Random(options.seed, index));
+    if (options.photographs) result.view.map.color = picture(index);
     return result;
+  }
+
+  PhotographHeader photographHeader(std::size_t index) const {
+    const DepthRange range = depthRange(options);
+    return {headers[index].name, std::get<Pinhole>(headers[index].projection),
+            headers[index].world_from_camera, DepthInterval{range.near, range.far}};
+  }
+
+  void photograph(std::size_t index, Silhouettes silhouettes, Photograph& result) const {
+    result.color = picture(index);
+    result.brightness = brightnessOf(result.color);
+    if (silhouettes == Silhouettes::None) return;
+    result.mask = Image<std::uint8_t>(options.width, options.height);
+    look(index,
+         [&](int x, int y, const synth::SeenPoint& point) { result.mask(x, y) = point.triangle ? 255 : 0; });
   }
 };
 
@@ -122,6 +93,19 @@ SyntheticView SyntheticScan::render(std::size_t index) const { return impl_->ren
 
 ViewSequence SyntheticScan::views() const {
   return {impl_->headers, [impl = impl_](std::size_t index) { return impl->render(index).view.map; }};
+}
+
+PhotographHeader SyntheticScan::photographHeader(std::size_t index) const {
+  return impl_->photographHeader(index);
+}
+
+PhotographSequence SyntheticScan::photographs(Silhouettes silhouettes) const {
+  if (!impl_->options.photographs) throw InvalidArgument("photographs", "the scan takes none");
+  std::vector<PhotographHeader> headers;
+  for (std::size_t i = 0; i < size(); ++i) headers.push_back(impl_->photographHeader(i));
+  return {std::move(headers), [impl = impl_, silhouettes](std::size_t index, Photograph& photograph) {
+            impl->photograph(index, silhouettes, photograph);
+          }};
 }
 
 std::vector<SyntheticView> renderAll(const SyntheticScan& scan, const Progress& progress) {

@@ -108,6 +108,26 @@ TEST(Mvsnet, ConfidenceAndColourAreOptional) {
   EXPECT_EQ(read.map.depth, view.map.depth);
 }
 
+TEST(Mvsnet, PhotographsAreWrittenWithoutDepthMaps) {
+  const TemporaryFolder folder;
+  Photograph photograph;
+  photograph.camera = {6, 4, 7, 7, 2.5, 1.5, {}};
+  photograph.brightness = Image<float>(6, 4, 0.5f);
+  MvsnetWriter writer(folder.path());
+  writer.add(photograph);
+  photograph.color = Image<Rgb8>(6, 4, Rgb8{1, 2, 3}), photograph.depth = {{1, 3}};
+  writer.add(photograph);
+  EXPECT_EQ(writer.size(), 2u);
+  EXPECT_EQ(folder.entryCount(), 2u);
+  EXPECT_EQ(readPngGrey8(folder / "images/00000000.png"), Image<std::uint8_t>(6, 4, 128));
+  EXPECT_EQ(readPngRgb(folder / "images/00000001.png"), photograph.color);
+  EXPECT_TRUE(readText(folder / "cams/00000000_cam.txt").ends_with("\n0 0 192 0\n"));
+  EXPECT_TRUE(readText(folder / "cams/00000001_cam.txt").ends_with(" 192 3\n"));
+  photograph.camera.width = 7, photograph.name = "odd";
+  EXPECT_EQ(messageOf<InvalidArgument>([&] { writer.add(photograph); }),
+            "photograph odd: the picture must have the size of its camera");
+}
+
 TEST(Mvsnet, WriterRefusesWhatTheLayoutCannotHold) {
   const TemporaryFolder folder;
   MvsnetWriter writer(folder.path());
@@ -120,7 +140,7 @@ TEST(Mvsnet, WriterRefusesWhatTheLayoutCannotHold) {
   view.projection = Pinhole{7, 4, 7, 7, 3, 2, {}};
   EXPECT_THROW(writer.add(view), InvalidArgument);
   EXPECT_EQ(writer.size(), 0u);
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "depth_est"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "depth_est"));
   writeText(folder / "file", "");
   EXPECT_THROW(MvsnetWriter(folder / "file"), IoError);
 }

@@ -8,6 +8,7 @@
 #include "tool/run_tool.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/io/mesh_file.h"
+#include "vdbfuse/io/pfm.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/mesh/topology.h"
 
@@ -61,6 +62,24 @@ TEST(Synth, WritesTheSameBytesForOneThreadAndTwo) {
     EXPECT_EQ(readText(folder / ("1/" + file)), readText(folder / ("2/" + file))) << file;
 }
 
+TEST(Synth, PicturesComeWithTheDepthMapsOrAlone) {
+  const TemporaryFolder folder;
+  const std::string options = " --textured --gain 1.2 --bias 3 --image-noise 2 --gloss 0.2 --true-depth";
+  ASSERT_EQ(runTool(folder, "synth sphere both" + options + kSmall).exit_code, 0);
+  ASSERT_EQ(runTool(folder, "synth sphere alone --images-only" + options + kSmall).exit_code, 0);
+  const View view = readDepthSet(folder / "both").views.load(1);
+  EXPECT_EQ(view.map.color.width(), 64);
+  EXPECT_EQ(view.map.color, readPngRgb(folder / "alone/images/00000001.png"));
+  EXPECT_FALSE(fs::exists(folder / "alone/depth_est"));
+  EXPECT_FALSE(fs::exists(folder / "alone/confidence"));
+  EXPECT_THAT(readText(folder / "alone/cams/00000001_cam.txt"), testing::EndsWith(" 192 2.1\n"));
+  const Image<float> truth = readPfm(folder / "alone/true_depth/00000001.pfm");
+  EXPECT_EQ(truth, readPfm(folder / "both/true_depth/00000001.pfm"));
+  EXPECT_NEAR(truth(32, 24), view.map.depth(32, 24), 0.02);
+  const auto story = nlohmann::json::parse(readText(folder / "alone/scene.json"));
+  EXPECT_EQ(story["options"]["photographs"]["gain"], 1.2);
+}
+
 TEST(Synth, RefusesAFolderThatIsNotEmptyAndReplacesItWhenTold) {
   const TemporaryFolder folder;
   fs::create_directory(folder / "scan");
@@ -79,7 +98,8 @@ TEST(Synth, LeavesNothingBehindWhenTheSceneCannotBeRead) {
   const TemporaryFolder folder;
   const ToolResult unknown = runTool(folder, "synth teapot scan");
   EXPECT_EQ(unknown.exit_code, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("'teapot' is neither sphere, box, torus, figure, ball nor a mesh file"));
+  EXPECT_THAT(unknown.err,
+              HasSubstr("'teapot' is neither sphere, box, torus, figure, occluder, ball nor a mesh file"));
   writeText(folder / "broken.ply", "ply\n");
   EXPECT_EQ(runTool(folder, "synth broken.ply scan").exit_code, 1);
   EXPECT_EQ(folder.entryCount(), 1u);
@@ -96,6 +116,8 @@ TEST(Synth, SaysWhatIsWrongWithItsOptions) {
   EXPECT_THAT(words("--arc moon"), HasSubstr("expected front|full|ring|room|upper, found 'moon'"));
   EXPECT_THAT(words("--views 0 --missing 2"),
               HasSubstr("views must be positive; the share of missing pixels must lie in [0, 1]"));
+  EXPECT_THAT(words("--images-only"), HasSubstr("--images-only requires --textured"));
+  EXPECT_THAT(words("--textured --gain 0.5"), HasSubstr("the gain must be at least 1"));
   EXPECT_EQ(folder.entryCount(), 0u);
 }
 

@@ -15,6 +15,7 @@
 #include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/geometry/look_at.h"
 #include "vdbfuse/io/mesh_file.h"
+#include "vdbfuse/io/pfm.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/synth/synthetic_scan.h"
 
@@ -44,6 +45,8 @@ struct Request {
   SynthOptions options;
   std::optional<double> outliers;
   std::optional<ConfidenceKind> confidence;
+  PhotographOptions photographs;
+  bool textured = false, images_only = false, true_depth = false;
   bool hard = false, oracle = false, overwrite = false, quiet = false;
   int threads = 0;
 };
@@ -57,6 +60,7 @@ SynthOptions resolved(const Request& request) {
   SynthOptions options = request.hard ? hardened(request.options) : request.options;
   std::tie(options.width, options.height) = parseSize(request.size);
   if (request.outliers) options.outliers = *request.outliers;
+  if (request.textured) options.photographs = request.photographs;
   if (request.confidence) options.confidence = *request.confidence;
   refuse("synth", validate(options));
   return options;
@@ -67,7 +71,8 @@ Scene loadScene(const Request& request) {
   const bool known = std::find(names.begin(), names.end(), request.scene) != names.end();
   if (!known && !fs::exists(request.scene))
     throw InvalidArgument(
-        "SCENE", "'" + request.scene + "' is neither sphere, box, torus, figure, ball nor a mesh file");
+        "SCENE",
+        "'" + request.scene + "' is neither sphere, box, torus, figure, occluder, ball nor a mesh file");
   Scene scene = known ? makeScene(request.scene)
                       : sceneFromMesh(fs::path(request.scene).stem().string(), readMesh(request.scene));
   scene.up = axisNamed(request.up);
@@ -90,6 +95,11 @@ ordered_json json(const SceneRegion& region) {
   return j;
 }
 
+ordered_json json(const std::optional<PhotographOptions>& p) {
+  if (!p) return {};
+  return {{"gain", p->gain}, {"bias", p->bias}, {"noise", p->noise}, {"gloss", p->gloss}};
+}
+
 ordered_json json(const SynthOptions& o) {
   return {{"views", o.views},
           {"arc", nameOf(kArcs, o.arc)},
@@ -104,6 +114,7 @@ ordered_json json(const SynthOptions& o) {
           {"missing", o.missing},
           {"confidence", nameOf(kConfidences, o.confidence)},
           {"background", nameOf(kBackgrounds, o.background)},
+          {"photographs", json(o.photographs)},
           {"quantum", o.quantum},
           {"seed", o.seed}};
 }
@@ -146,14 +157,19 @@ void writeText(const fs::path& path, const std::string& text) {
   if (!file) throw IoError(path, "cannot be written");
 }
 
-void writeOracle(const fs::path& folder, const SyntheticView& view) {
-  writePng(folder / "wrong" / (view.view.name + ".png"), view.mistake);
+void writeView(MvsnetWriter& writer, const SyntheticView& view, const fs::path& folder,
+               const Request& request) {
+  const std::string& name = view.view.name;
+  if (request.oracle) writePng(folder / "wrong" / (name + ".png"), view.mistake);
+  if (request.true_depth) writePfm(folder / "true_depth" / (name + ".pfm"), view.true_depth);
+  if (!request.images_only) writer.add(view.view);
 }
 
 // Renders a few views at a time, so that all threads have work and the memory stays small.
 ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, const Request& request) {
   constexpr std::size_t kBatch = 8;
   if (request.oracle) fs::create_directories(folder / "wrong");
+  if (request.true_depth) fs::create_directories(folder / "true_depth");
   MvsnetWriter writer(folder);
   ScanStatistics statistics_sum;
   for (std::size_t first = 0; first < scan.size(); first += kBatch) {
@@ -161,10 +177,12 @@ ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, con
     parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) views[i] = scan.render(first + i);
     });
-    for (const SyntheticView& view : views) {
-      writer.add(view.view);
-      if (request.oracle) writeOracle(folder, view);
-      statistics_sum += statistics(view);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      writeView(writer, views[i], folder, request);
+      const Image<Rgb8>& color = views[i].view.map.color;
+      if (request.images_only)
+        writer.add(Photograph{scan.photographHeader(first + i), brightnessOf(color), color, {}});
+      statistics_sum += statistics(views[i]);
     }
   }
   return statistics_sum;
@@ -224,6 +242,25 @@ void addSensorOptions(CLI::App& app, Request& request) {
       ->default_str("none");
 }
 
+void addPhotographOptions(CLI::App& app, Request& request) {
+  PhotographOptions& p = request.photographs;
+  auto* textured = app.add_flag("--textured", request.textured,
+                                "texture and light the scene, and write a picture of each view (images/)");
+  app.add_option("--gain", p.gain, "exposures differ by view, by a factor between 1/X and X")
+      ->needs(textured)
+      ->capture_default_str();
+  app.add_option("--bias", p.bias, "of a view's brightness: ±X grey levels")
+      ->needs(textured)
+      ->capture_default_str();
+  app.add_option("--image-noise", p.noise, "standard deviation in the pictures, grey levels")
+      ->needs(textured)
+      ->capture_default_str();
+  app.add_option("--gloss", p.gloss, "brightness of highlights, 0 to 1")
+      ->needs(textured)
+      ->capture_default_str();
+  app.add_flag("--images-only", request.images_only, "cameras and pictures, no depth maps")->needs(textured);
+}
+
 }  // namespace
 
 void addSynth(CLI::App& app, Action& action) {
@@ -232,7 +269,9 @@ void addSynth(CLI::App& app, Action& action) {
       "synth",
       "Makes a scan whose truth is known: depth maps (MVSNet layout), truth.ply, scene.json.\n"
       "  vdbfuse synth figure scan --arc ring --views 72 --size 320x240 --outliers 0.1");
-  command->add_option("scene", request->scene, "sphere, box, torus, figure, ball, or a closed mesh file")
+  command
+      ->add_option("scene", request->scene,
+                   "sphere, box, torus, figure, occluder, ball, or a closed mesh file")
       ->required();
   command->add_option("outdir", request->folder, "folder to write")->required();
   // The first option: those after it overrule the preset.
@@ -252,9 +291,11 @@ void addSynth(CLI::App& app, Action& action) {
       ->check(axisCheck())
       ->capture_default_str();
   addSensorOptions(*command, *request);
+  addPhotographOptions(*command, *request);
   command->add_option("--seed", o.seed, "of the random numbers")->capture_default_str();
   command->add_flag("--oracle", request->oracle,
                     "also write wrong/*.png: 0 right, 1 mixed, 2 patch, 3 outlier");
+  command->add_flag("--true-depth", request->true_depth, "also write true_depth/*.pfm: 0 nothing to see");
   command->add_option("--threads", request->threads, "0: all processors")->capture_default_str();
   command->add_flag("--overwrite", request->overwrite, "replace a folder that is not empty");
   command->add_flag("--quiet", request->quiet, "print nothing");

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "vdbfuse/sensor/photograph.h"
 #include "vdbfuse/sensor/view.h"
 
 namespace vdbfuse {
@@ -26,6 +27,10 @@ class MvsnetWriter {
   /// InvalidArgument when the projection is not a pinhole without distortion, or validate(view) objects;
   /// IoError when a file cannot be written.
   void add(const View& view);
+
+  /// Writes a photograph as number size(): its camera and its picture in 8 bits, neither depth map nor mask. The line of depths holds what the photograph says, zeros when it says nothing. Throws as
+  /// above.
+  void add(const Photograph& photograph);
 
   /// Number of views written so far.
   std::size_t size() const { return count_; }

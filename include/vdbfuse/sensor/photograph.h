@@ -35,6 +35,9 @@ struct Photograph : PhotographHeader {
   Image<std::uint8_t> mask;  ///< silhouette: non-zero where the pixel sees the object; empty: unknown
 };
 
+/// The brightness of a colour picture, by the weights of ITU-R BT.601.
+Image<float> brightnessOf(const Image<Rgb8>& color);
+
 /// Everything that is wrong with a photograph, one sentence each: camera, pose, image sizes, depths.
 std::vector<std::string> validate(const Photograph& photograph);
 

@@ -52,8 +52,8 @@ struct Scene {
       -Eigen::Vector3d::UnitY();  ///< direction from the centre to a camera that sees the front
 };
 
-/// Names makeScene() knows: sphere, box, torus, figure, and ball: a sphere with a diameter, not a diagonal,
-/// of 1, so that in metres it is the one on which fusion programs have been compared.
+/// Names makeScene() knows: sphere, box, torus, figure, occluder, and ball: a sphere with a diameter, not a
+/// diagonal, of 1, so that in metres it is the one on which fusion programs have been compared.
 std::vector<std::string> sceneNames();
 
 /// How finely scenes defined by a signed distance are meshed.
@@ -64,8 +64,9 @@ struct SceneOptions {
 };
 
 /// A scene defined by its signed distance. `figure` is the test of this project, all in parts of its height:
-/// legs 0.04 thick, and a cavity in the chest that opens to the front, 0.1 wide and high and 0.2 deep. Throws
-/// InvalidArgument for an unknown name or cell ≤ 0.
+/// legs 0.04 thick, and a cavity in the chest that opens to the front, 0.1 wide and high and 0.2 deep.
+/// `occluder` is for stereo: a wall behind a row of posts that hide about half of it, another half from every
+/// direction. Throws InvalidArgument for an unknown name or cell ≤ 0.
 Scene makeScene(const std::string& name, const SceneOptions& options = {});
 
 /// A scene made of a closed mesh, moved and scaled as stated above. Throws InvalidArgument for a mesh without

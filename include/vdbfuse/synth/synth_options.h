@@ -37,6 +37,17 @@ enum class Background {
   Wall,  ///< a measured sphere of radius kWallRadius around everything; no part of the truth
 };
 
+/// How the pictures of textured scenes are taken.
+struct PhotographOptions {
+  /// Exposures differ by view: brightness is multiplied by a factor between 1/gain and gain, uniform in its
+  /// logarithm. ≥ 1.
+  double gain = 1;
+  /// Grey levels (of 255) in ±bias, uniform, are added by view.
+  double bias = 0;
+  double noise = 1;    ///< standard deviation in each channel of each pixel, grey levels
+  double gloss = 0.1;  ///< brightness, in [0, 1], of highlights, which move with the camera
+};
+
 inline constexpr double kCameraDistance = 1.5;  ///< in diagonals of the scene
 inline constexpr double kWallRadius = 3.0;
 inline constexpr double kRingElevationDeg = 10.0;
@@ -68,6 +79,8 @@ struct SynthOptions {
   double missing = 0;
   ConfidenceKind confidence = ConfidenceKind::Informative;
   Background background = Background::None;
+  /// When given, surfaces are textured and lit, and every view has a picture.
+  std::optional<PhotographOptions> photographs;
   std::uint64_t seed = 1;
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vdbfuse/base/progress.h"
+#include "vdbfuse/sensor/photograph.h"
 #include "vdbfuse/sensor/view_sequence.h"
 #include "vdbfuse/synth/scene.h"
 #include "vdbfuse/synth/synth_options.h"
@@ -20,7 +21,8 @@ enum class Mistake : std::uint8_t {
   Outlier = 3,  ///< a random depth
 };
 
-/// A view and the truth about it. All images have the size of the view.
+/// A view and the truth about it; with its picture where the options ask for photographs. All images have the
+/// size of the view.
 struct SyntheticView {
   View view;
   Image<float> true_depth;     ///< kInvalidDepth where there is nothing to see
@@ -43,6 +45,9 @@ struct ScanStatistics {
 ScanStatistics& operator+=(ScanStatistics& sum, const ScanStatistics& other);
 ScanStatistics statistics(const SyntheticView& view);
 
+/// Whether photographs come with the outline of the object.
+enum class Silhouettes { None, True };
+
 /// Renders views on demand. A view comes out the same whenever, on whatever thread and in whatever order it
 /// is asked for: its random numbers depend on the seed and its index only. Cheap to copy.
 class SyntheticScan {
@@ -59,6 +64,11 @@ class SyntheticScan {
   SyntheticView render(std::size_t index) const;
   /// The views without the truth, rendered whenever they are loaded. Outlives this object.
   ViewSequence views() const;
+  /// The view's camera, with depthRange() for its depths.
+  PhotographHeader photographHeader(std::size_t index) const;
+  /// The pictures of the views alone, rendered whenever they are loaded.
+  /// Outlives this object. Throws InvalidArgument when the options ask for none.
+  PhotographSequence photographs(Silhouettes silhouettes = Silhouettes::None) const;
 
  private:
   struct Impl;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Painted stone: a colour for every point of space, so that a surface looks alike from everywhere.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace vdbfuse::synth {
+
+/// Gradient noise (Perlin, SIGGRAPH 1985) in octaves, cells of one tone each (Worley, SIGGRAPH 1996), and
+/// specks: contrast at all wavelengths from 0.25 to 0.0005 diagonals of the scene.
+class SolidTexture {
+ public:
+  explicit SolidTexture(std::uint64_t seed) : seed_(static_cast<std::uint32_t>(seed ^ seed >> 32)) {}
+
+  /// Share of the light that the point reflects in red, green and blue, in [0.05, 0.95]. Details smaller than
+  /// `blur` (a length, > 0) are faded out.
+  Eigen::Vector3d albedo(const Eigen::Vector3d& point, double blur) const;
+
+ private:
+  std::uint32_t seed_;
+};
+
+}  // namespace vdbfuse::synth
