@@ -199,8 +199,9 @@ Detection detect(const fs::path& path) {
 // Of one frame; its picture is empty where there is none.
 PhotoFile photoOf(const fs::path& file, const FrameFields& fields) {
   PhotoFile photo;
-  const JsonField stated = fields.frame.at("file_path");
-  photo.picture = pathInside(file.parent_path(), stated.text(), file, stated.place());
+  const auto stated = fields.frame.find("file_path");
+  if (!stated) return {};
+  photo.picture = pathInside(file.parent_path(), stated->text(), file, stated->place());
   if (!hasPictureExtension(photo.picture))
     photo.picture = findPhoto(photo.picture.parent_path(), photo.picture.filename().string());
   if (!isFile(photo.picture)) return {};
