@@ -3,6 +3,7 @@
 // then along the surface that was found, on finer and finer levels.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "stereo/cross_view.h"
@@ -14,7 +15,7 @@
 namespace vdbfuse::stereo {
 
 struct PosedPyramid {
-  const std::vector<PictureLevel>* levels = nullptr;
+  std::shared_ptr<const std::vector<PictureLevel>> levels;
   RigidTransform world_from_camera = RigidTransform::Identity();
 };
 
