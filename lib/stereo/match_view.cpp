@@ -12,6 +12,7 @@
 #include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse::stereo {
+void (*debug_hook)(const DepthLayer&, int level, const char* what) = nullptr;
 namespace {
 
 constexpr int kFirstLevelSide = 400;          // pixels, longest side of the level of the first sweep at most
@@ -19,6 +20,7 @@ constexpr float kFirstStep = 1.0F;            // pixels of that level
 constexpr float kExactStep = 0.5F;            // the same where no surface sweeps follow
 constexpr float kOtherViewsWeight = 0.5F;     // of another view's depth, beside a partner's peak
 constexpr float kOtherViewsCurvature = 0.3F;  // how well it knows its place
+constexpr int kFirstSweeps = 4;
 constexpr int kSmoothRadius = 4;
 constexpr float kSmoothScale = 0.75F;  // pixels of the level
 
@@ -202,16 +204,19 @@ DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<T
 }
 
 // Peaks of all partners around a surface.
-DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach, float step_px,
+PlaneMap planesOf(const Stage& stage, const DepthLayer& layer) {
+  return planeFitted(layer.inverse_depth, layer.score,
+                     {kSmoothRadius, kSmoothScale * stage.pixel, 4 * kSmoothScale * stage.pixel, 3});
+}
+
+DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
                         const std::vector<Testimony>& others = {}) {
-  const float step = step_px * stage.pixel;
+  const float step = kExactStep * stage.pixel, step_px = kExactStep;
   const SweepRange range{-step * static_cast<float>(reach), step, 2 * reach + 1};
+  const Guide guide = guideOf(before, planesOf(stage, before));
   DepthLayer layer = before;
   for (float& score : layer.score) score *= 0.5F;
-  const Image<float> base =
-      filled(planeFitted(before.inverse_depth, before.score,
-                         {kSmoothRadius, kSmoothScale * stage.pixel, 4 * kSmoothScale * stage.pixel, 3}),
-             0.5F * (stage.first + stage.last));
+  const Image<float> base = filled(guide.inverse_depth, 0.5F * (stage.first + stage.last));
   forEachTile(stage.reference, [&](const TileRect& rect) {
     SweepTile tile;
     SweepMemory memory;
@@ -231,6 +236,11 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
       addOthers(others, x, y, base(x, y) + range.first, range.step, peaks);
       const Modes& modes = voting.count(peaks);
       if (modes.empty()) return;
+      const float before_score = before.score(x, y) + before.support(x, y);
+      if (guide.is_foreign(x, y) && modes[0].score + modes[0].support <= before_score) {
+        layer.score(x, y) = before.score(x, y);
+        return;
+      }
       const float w = base(x, y) + range.first + modes[0].step * range.step;
       store(modes[0], modes.size() > 1 ? modes[1].score : 0.0F, std::clamp(w, stage.first, stage.last),
             range.step, x, y, layer);
@@ -275,8 +285,12 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
     for (DepthLayer& layer : layers) {
       if (!is_first)
         layer = doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
-      for (int sweep = 0; sweep < (level == 0 ? options.surface_sweeps : 1); ++sweep)
-        layer = surfaceSweep(stage, layer, sweep == 0 ? 5 : 4, 0.5F);
+      if (debug_hook) debug_hook(layer, level, "start");
+      const int sweeps = is_first ? kFirstSweeps : level == 0 ? options.surface_sweeps : 2;
+      for (int sweep = 0; sweep < sweeps; ++sweep) {
+        layer = surfaceSweep(stage, layer, sweep == 0 ? 5 : 4);
+        if (debug_hook) debug_hook(layer, level, "swept");
+      }
     }
   }
   return layers;
@@ -285,7 +299,7 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
 DepthLayer crossChecked(const MatchInput& input, const StereoOptions& options, const DepthLayer& own,
                         const std::vector<Testimony>& others) {
   const Stage stage = stageOf(input, 0, options, kSurfaceThreshold);
-  return surfaceSweep(stage, agreed(stage, own, others), 4, 0.5F, others);
+  return surfaceSweep(stage, agreed(stage, own, others), 4, others);
 }
 
 }  // namespace vdbfuse::stereo

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "stereo/plane_rows.h"
 #include "vdbfuse/base/parallel.h"
@@ -30,6 +31,7 @@ struct Plane {
 // Sums of the normal equations.
 struct Moments {
   FloatVec w, x, y, xx, xy, yy, v, vx, vy;
+  FloatVec all;  // weights before they are lessened
 
   HWY_INLINE void add(FloatVec weight, FloatVec value, float dx, float dy) {
     const FloatVec wx = hn::Mul(weight, set(dx)), wy = hn::Mul(weight, set(dy)), wv = hn::Mul(weight, value);
@@ -59,7 +61,7 @@ HWY_INLINE Moments gather(const PlaneRows& rows, std::size_t at, FloatVec middle
                           float scale) {
   const Floats d;
   const FloatVec zero = hn::Zero(d);
-  Moments moments{zero, zero, zero, zero, zero, zero, zero, zero, zero};
+  Moments moments{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
   const FloatVec sharpness = set(1 / (scale * scale));
   const int radius = rows.radius;
   for (int dy = -radius; dy <= radius; ++dy) {
@@ -70,28 +72,36 @@ HWY_INLINE Moments gather(const PlaneRows& rows, std::size_t at, FloatVec middle
       const FloatVec expected = hn::MulAdd(plane.b, set(fx), hn::MulAdd(plane.c, set(fy), plane.a));
       const FloatVec off = hn::Sub(value, expected);
       const FloatVec far = hn::MulAdd(hn::Mul(off, off), sharpness, set(1.0F));
-      moments.add(hn::Div(hn::LoadU(d, rows.weight + at + shift), hn::Mul(far, far)), value, fx, fy);
+      const FloatVec weight = hn::LoadU(d, rows.weight + at + shift);
+      moments.all = hn::Add(moments.all, weight);
+      moments.add(hn::Div(weight, hn::Mul(far, far)), value, fx, fy);
     }
   }
   return moments;
 }
 
-void fitRow(const PlaneRows& rows, std::size_t at, std::size_t count, float* result) {
+void fitRow(const PlaneRows& rows, std::size_t at, std::size_t count, const PlaneLines& lines) {
   const Floats d;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const FloatVec middle = hn::LoadU(d, rows.value + at + i);
     const FloatVec weight = hn::LoadU(d, rows.weight + at + i);
     if (hn::AllTrue(d, hn::Eq(weight, set(0.0F)))) {
-      hn::StoreU(set(0.0F), d, result + i);
+      for (float* line : lines) hn::StoreU(set(0.0F), d, line + i);
       continue;
     }
     Plane plane{set(0.0F), set(0.0F), set(0.0F)};
+    FloatVec share = set(0.0F);
     float scale = rows.first_scale;
     for (int round = 0; round < rows.rounds; ++round) {
-      plane = gather(rows, at + i, middle, plane, scale).solve();
+      const Moments moments = gather(rows, at + i, middle, plane, scale);
+      plane = moments.solve();
+      share = hn::Div(moments.w, hn::Max(moments.all, set(1e-20F)));
       scale = std::max(rows.scale, 0.5F * scale);
     }
-    hn::StoreU(hn::IfThenElseZero(hn::Gt(weight, set(0.0F)), hn::Add(middle, plane.a)), d, result + i);
+    const auto is_known = hn::Gt(weight, set(0.0F));
+    const FloatVec values[] = {hn::Add(middle, plane.a), plane.b, plane.c, share};
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      hn::StoreU(hn::IfThenElseZero(is_known, values[k]), d, lines[k] + i);
   }
 }
 
@@ -116,20 +126,25 @@ Image<float> withMargin(const Image<float>& image, int margin) {
 
 }  // namespace
 
-Image<float> planeFitted(const Image<float>& inverse_depth, const Image<float>& weight,
-                         const PlaneFitOptions& options) {
+PlaneMap planeFitted(const Image<float>& inverse_depth, const Image<float>& weight,
+                     const PlaneFitOptions& options) {
   const int radius = options.radius, width = inverse_depth.width(), height = inverse_depth.height();
   const Image<float> values = withMargin(inverse_depth, radius), weights = withMargin(weight, radius);
   const PlaneRows rows{values.data(),       weights.data(), values.width(), radius,
                        options.first_scale, options.scale,  options.rounds};
-  Image<float> result(width, height);
+  PlaneMap result{{width, height}, {width, height}, {width, height}, {width, height}};
   parallelFor(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> line(static_cast<std::size_t>(width + kVectorLanes));
+    const auto count = static_cast<std::size_t>(width);
+    std::vector<float> memory(4 * (count + kVectorLanes));
+    PlaneLines lines{};
+    for (std::size_t k = 0; k < lines.size(); ++k) lines[k] = memory.data() + k * (count + kVectorLanes);
+    Image<float>* const images[] = {&result.value, &result.dx, &result.dy, &result.share};
     for (std::size_t y = begin; y < end; ++y) {
       const std::size_t at = (y + static_cast<std::size_t>(radius)) * static_cast<std::size_t>(rows.stride) +
                              static_cast<std::size_t>(radius);
-      HWY_DYNAMIC_DISPATCH(fitRow)(rows, at, static_cast<std::size_t>(width), line.data());
-      std::copy_n(line.data(), width, result.row(static_cast<int>(y)));
+      HWY_DYNAMIC_DISPATCH(fitRow)(rows, at, count, lines);
+      for (std::size_t k = 0; k < lines.size(); ++k)
+        std::copy_n(lines[k], count, images[k]->row(static_cast<int>(y)));
     }
   });
   return result;

@@ -13,10 +13,15 @@ struct PlaneFitOptions {
   int rounds = 3;         ///< of reweighting
 };
 
-/// The value at each pixel of the plane through those around it, fitted by least squares, a pixel counting
-/// `weight`·(1 + (Δ/scale)²)⁻² for its distance Δ from the plane. Pixels of weight 0 do not count, and become
-/// 0.
-Image<float> planeFitted(const Image<float>& inverse_depth, const Image<float>& weight,
-                         const PlaneFitOptions& options);
+/// At each pixel the plane through those around it: its value there and how it changes with x and y.
+struct PlaneMap {
+  Image<float> value, dx, dy;
+  Image<float> share;  ///< of the weight around that lies on it, in [0, 1]
+};
+
+/// Fitted by least squares, a pixel counting `weight`·(1 + (Δ/scale)²)⁻² for its distance Δ from the plane.
+/// Pixels of weight 0 do not count, and have a value of 0.
+PlaneMap planeFitted(const Image<float>& inverse_depth, const Image<float>& weight,
+                     const PlaneFitOptions& options);
 
 }  // namespace vdbfuse::stereo

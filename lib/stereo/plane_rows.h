@@ -2,6 +2,8 @@
 // What the kernel of planeFitted() works on.
 #pragma once
 
+#include <array>
+
 #include "stereo/sweep_kernels.h"
 
 namespace vdbfuse::stereo {
@@ -14,5 +16,8 @@ struct PlaneRows {
   float first_scale, scale;
   int rounds;
 };
+
+/// One row each of PlaneMap's value, dx, dy and share.
+using PlaneLines = std::array<float*, 4>;
 
 }  // namespace vdbfuse::stereo

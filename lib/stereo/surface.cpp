@@ -73,6 +73,35 @@ Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
   return std::move(pyramid.front());
 }
 
+Guide guideOf(const DepthLayer& layer, const PlaneMap& planes) {
+  constexpr float kLeastShare = 0.3F;
+  constexpr int kFurthest = 12;
+  constexpr std::array<std::array<int, 2>, 8> kDirections = {
+      {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+  Guide guide{planes.value, {planes.value.width(), planes.value.height()}};
+  const auto is_agreed = [&](int x, int y) { return planes.share(x, y) >= kLeastShare; };
+  forEachRow(planes.value.height(), [&](int y) {
+    for (int x = 0; x < planes.value.width(); ++x) {
+      if (is_agreed(x, y)) continue;
+      float best = 0;
+      guide.is_foreign(x, y) = 1;
+      guide.inverse_depth(x, y) = 0;
+      for (int distance = 1; distance <= kFurthest && best == 0; ++distance) {
+        for (const auto& [ux, uy] : kDirections) {
+          const int from_x = x + distance * ux, from_y = y + distance * uy;
+          if (!planes.value.contains(from_x, from_y) || !is_agreed(from_x, from_y)) continue;
+          if (layer.score(from_x, from_y) <= best) continue;
+          best = layer.score(from_x, from_y);
+          guide.inverse_depth(x, y) = planes.value(from_x, from_y) -
+                                      static_cast<float>(distance * ux) * planes.dx(from_x, from_y) -
+                                      static_cast<float>(distance * uy) * planes.dy(from_x, from_y);
+        }
+      }
+    }
+  });
+  return guide;
+}
+
 DepthLayer doubled(const DepthLayer& layer, int width, int height, float step) {
   DepthLayer result = emptyLayer(width, height);
   const Image<float>& half = layer.inverse_depth;
