@@ -12,6 +12,10 @@
 //   stereo/depth_maps/NAME.photometric.bin      in its place, where that is missing
 //   images/NAME                                 optional
 //
+//   sparse/points3D.bin or .txt                 for photographs: where depths lie
+//
+// Photographs need no stereo/, and the model may also lie beside images/ or in any folder next to it.
+//
 // A pixel's depth is that of its centre, at .5 like everything that the cameras were calibrated with.
 // COLMAP's stereo_fusion takes it at the pixel's corner: its points lie half a pixel off ours.
 #pragma once
@@ -19,6 +23,7 @@
 #include <filesystem>
 
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/image_set.h"
 
 namespace vdbfuse {
 
@@ -34,5 +39,15 @@ void writeColmap(const std::filesystem::path& folder, const ViewSequence& views,
                  const Progress& progress);
 
 DepthSetFormat colmapFormat();
+
+/// `path` is the workspace, or the folder of the model with images/ beside it or up to two folders above.
+/// Distortion is taken out; points give each photograph its depths. Throws IoError.
+ImageSet readColmapImages(const std::filesystem::path& path, const ImageReadOptions& options);
+
+/// images/ and sparse/, without points.
+void writeColmapImages(const std::filesystem::path& folder, const PhotographSequence& photographs,
+                       const ImageWriteOptions& options, const Progress& progress);
+
+ImageSetFormat colmapImageFormat();
 
 }  // namespace vdbfuse

@@ -59,6 +59,18 @@ class TextFields : public ColmapFields {
     return std::string(rest);
   }
   void skipPoints() override { cursor_.restOfLine(); }
+  void skipColor() override {
+    for (int i = 0; i < 4; ++i) word();
+  }
+  std::vector<std::uint32_t> track() override {
+    std::vector<std::uint32_t> images;
+    for (word_ = cursor_.wordOnLine(); !word_.empty(); word_ = cursor_.wordOnLine()) {
+      first_ = word_;
+      images.push_back(id());
+      longId();  // which of its points
+    }
+    return images;
+  }
   void fail(const std::string& expected, const std::string& found) const override {
     cursor_.failWith(expected, found);
   }
@@ -120,16 +132,33 @@ class BinaryFields : public ColmapFields {
   }
   void skipPoints() override {
     constexpr std::uint64_t kBytesOfAPoint = 24;
-    const auto count = take<std::uint64_t>();
-    if (count > (bytes_.size() - position_) / kBytesOfAPoint)
-      fail(std::to_string(count) + " points of 24 bytes", "the end of the file");
-    position_ += static_cast<std::size_t>(count * kBytesOfAPoint);
+    position_ += static_cast<std::size_t>(countOf("points", kBytesOfAPoint) * kBytesOfAPoint);
+  }
+  void skipColor() override {
+    for (int i = 0; i < 3; ++i) take<std::uint8_t>();
+    take<double>();
+  }
+  std::vector<std::uint32_t> track() override {
+    std::vector<std::uint32_t> images(static_cast<std::size_t>(countOf("observations", 8)));
+    for (std::uint32_t& image : images) {
+      image = take<std::uint32_t>();
+      take<std::uint32_t>();  // which of its points
+    }
+    return images;
   }
   void fail(const std::string& expected, const std::string& found) const override {
     throw IoError(path(), "byte " + std::to_string(position_), expected, found);
   }
 
  private:
+  // A number of things that must still be there.
+  std::uint64_t countOf(const std::string& things, std::uint64_t bytes_of_one) {
+    const auto count = take<std::uint64_t>();
+    if (count > (bytes_.size() - position_) / bytes_of_one)
+      fail(std::to_string(count) + " " + things + " of " + std::to_string(bytes_of_one) + " bytes",
+           "the end of the file");
+    return count;
+  }
   template <class T>
   T take() {
     if (bytes_.size() - position_ < sizeof(T)) fail("another field", "the end of the file");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace vdbfuse {
 
@@ -24,6 +25,9 @@ class ColmapFields {
   virtual std::string model() = 0;  ///< name of a camera model, "number N" when it is unknown
   virtual std::string name() = 0;   ///< of an image
   virtual void skipPoints() = 0;    ///< what an image sees
+  virtual void skipColor() = 0;     ///< of a point, and its error
+  /// The images that see a point, the rest of its record.
+  virtual std::vector<std::uint32_t> track() = 0;
   [[noreturn]] virtual void fail(const std::string& expected, const std::string& found) const = 0;
 
   const std::filesystem::path& path() const { return path_; }

@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "formats/colmap_fields.h"
+#include "formats/sparse_depths.h"
 #include "io/folder.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
@@ -164,6 +166,30 @@ ColmapModel readColmapModel(const fs::path& folder) {
   std::stable_sort(model.images.begin(), model.images.end(),
                    [](const ColmapImage& a, const ColmapImage& b) { return a.name < b.name; });
   return model;
+}
+
+std::vector<std::optional<DepthInterval>> readColmapDepths(const fs::path& folder, const ColmapModel& model) {
+  std::vector<RigidTransform> poses;
+  std::map<std::uint32_t, std::size_t> index_of_image;
+  for (const ColmapImage& image : model.images) {
+    index_of_image[image.id] = poses.size();
+    poses.push_back(image.camera_from_world);
+  }
+  SparseDepths depths(std::move(poses));
+  const auto points = openColmapFile(folder, "points3D");
+  while (points && points->next()) {
+    points->longId();
+    Eigen::Vector3d position;
+    for (double& x : position) x = points->number();
+    points->skipColor();
+    for (const std::uint32_t image : points->track()) {
+      if (const auto found = index_of_image.find(image); found != index_of_image.end())
+        depths.add(found->second, position);
+    }
+  }
+  std::vector<std::optional<DepthInterval>> intervals;
+  for (std::size_t i = 0; i < model.images.size(); ++i) intervals.push_back(depths.interval(i));
+  return intervals;
 }
 
 }  // namespace vdbfuse

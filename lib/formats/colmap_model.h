@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of a COLMAP model says where depth maps were taken: cameras, images, and (since COLMAP 3.12) rigs and
-// frames, each as .bin or .txt. Points are not read.
+// frames, each as .bin or .txt; and what its points say about depths.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vdbfuse/geometry/projection.h"
 #include "vdbfuse/geometry/rigid_transform.h"
+#include "vdbfuse/sensor/photograph.h"
 
 namespace vdbfuse {
 
@@ -34,5 +36,10 @@ bool hasColmapModel(const std::filesystem::path& folder);
 /// Throws IoError: a file is missing or broken, a camera is of a model that is no pinhole with distortion of
 /// up to five coefficients, a quaternion is not of length 1, an image has no camera.
 ColmapModel readColmapModel(const std::filesystem::path& folder);
+
+/// Of each image of the model the depths that points3D.bin or .txt gives it, see SparseDepths; all empty
+/// where there is no such file. Throws IoError.
+std::vector<std::optional<DepthInterval>> readColmapDepths(const std::filesystem::path& folder,
+                                                           const ColmapModel& model);
 
 }  // namespace vdbfuse

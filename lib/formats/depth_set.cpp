@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/formats/depth_set.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "formats/arkit.h"
 #include "formats/colmap.h"
 #include "formats/e57.h"
+#include "formats/format_table.h"
 #include "formats/kitti.h"
 #include "formats/masks.h"
 #include "formats/mvsnet_format.h"
@@ -24,58 +24,6 @@
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
-namespace {
-
-enum class Ability { Read, Write };
-
-std::string formatNames(Ability ability) {
-  std::string names;
-  for (const DepthSetFormat& format : depthSetFormats()) {
-    if (ability == Ability::Write && format.write == nullptr) continue;
-    if (!names.empty()) names += ", ";
-    names += format.name;
-  }
-  return names;
-}
-
-const DepthSetFormat& formatNamed(const std::string& name) {
-  for (const DepthSetFormat& format : depthSetFormats()) {
-    if (format.name == name) return format;
-  }
-  throw InvalidArgument("format", "expected one of " + formatNames(Ability::Read) + ", found '" + name + "'");
-}
-
-// What lies there, for someone who wonders why it is not known.
-std::string contentsOf(const std::filesystem::path& path) {
-  constexpr std::size_t kShown = 4;
-  if (!std::filesystem::is_directory(path)) return "a file of another kind";
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
-    const std::string name = entry.path().filename().string();
-    names.push_back(entry.is_directory(error) ? name + "/" : name);
-  }
-  std::sort(names.begin(), names.end());
-  std::string text = names.empty() ? "an empty folder" : "a folder of ";
-  for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more" : text;
-}
-
-const DepthSetFormat& bestFormat(const std::filesystem::path& path) {
-  const DepthSetFormat* best = nullptr;
-  Detection::Fit best_fit = Detection::Fit::No;
-  for (const DepthSetFormat& format : depthSetFormats()) {
-    const Detection found = format.detect(path);
-    if (found.fit > best_fit) best = &format, best_fit = found.fit;
-  }
-  if (best == nullptr)
-    throw IoError(path, "", "a data set of a known format (vdbfuse formats PATH says what each lacks)",
-                  contentsOf(path));
-  return *best;
-}
-
-}  // namespace
-
 std::vector<std::string> validate(const ReadOptions& options) {
   std::vector<std::string> problems;
   const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
@@ -116,7 +64,8 @@ DepthSet readDepthSet(const std::filesystem::path& path, const ReadOptions& opti
   }
   if (!std::filesystem::exists(path))
     throw IoError(path, "", "a data set of depth maps", "nothing of that name");
-  const DepthSetFormat& format = options.format.empty() ? bestFormat(path) : formatNamed(options.format);
+  const DepthSetFormat& format = options.format.empty() ? bestFormat(depthSetFormats(), path, "a data set")
+                                                        : formatNamed(depthSetFormats(), options.format);
   DepthSet set = format.read(path, options);
   set.format = format.name;
   addMasks(set, path, options.masks);
@@ -125,18 +74,15 @@ DepthSet readDepthSet(const std::filesystem::path& path, const ReadOptions& opti
 
 void writeDepthSet(const std::filesystem::path& folder, const std::string& format, const ViewSequence& views,
                    const WriteOptions& options, const Progress& progress) {
-  const DepthSetFormat& target = formatNamed(format);
+  const DepthSetFormat& target = formatNamed(depthSetFormats(), format);
   if (target.write == nullptr)
-    throw InvalidArgument("format", "expected one that can be written (" + formatNames(Ability::Write) +
-                                        "), found '" + format + "', which can be read only");
+    throw InvalidArgument("format", "expected one that can be written (" +
+                                        formatNames(depthSetFormats(), Ability::Write) + "), found '" +
+                                        format + "', which can be read only");
   if (views.empty()) throw InvalidArgument("views", "expected at least one view, found none");
   if (options.depth_scale && !(*options.depth_scale > 0 && std::isfinite(*options.depth_scale)))
     throw InvalidArgument("depth_scale", "expected a number above 0");
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw IoError(folder, "the folder cannot be created: " + error.message());
-  if (!std::filesystem::is_empty(folder))
-    throw IoError(folder, "", "an empty folder", "one that is not empty");
+  requireEmptyFolder(folder);
   target.write(folder, views, options, progress);
 }
 

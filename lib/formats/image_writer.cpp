@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
@@ -31,13 +32,17 @@ std::string numberedName(std::size_t index, int digits) {
   return text.str();
 }
 
-std::vector<std::string> fileNames(const ViewSequence& views) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < views.size(); ++i) names.push_back(views.header(i).name);
+std::vector<std::string> fileNames(std::vector<std::string> names) {
   const bool all_usable = std::all_of(names.begin(), names.end(), canBeAFileName) &&
                           std::set<std::string>(names.begin(), names.end()).size() == names.size();
   for (std::size_t i = 0; i < names.size() && !all_usable; ++i) names[i] = numberedName(i, 8);
   return names;
+}
+
+std::vector<std::string> fileNames(const ViewSequence& views) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < views.size(); ++i) names.push_back(views.header(i).name);
+  return fileNames(std::move(names));
 }
 
 void forEachView(const ViewSequence& views, const Progress& progress,
@@ -80,6 +85,12 @@ std::string exactText(double value) {
   char buffer[32];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value);
   return std::string(buffer, end);
+}
+
+std::string numbersText(std::initializer_list<double> numbers) {
+  std::string text;
+  for (const double number : numbers) text += " " + exactText(number);
+  return text;
 }
 
 std::string matrixText(const Eigen::MatrixXd& matrix) {

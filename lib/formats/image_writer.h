@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "vdbfuse/base/progress.h"
 #include "vdbfuse/sensor/view_sequence.h"
@@ -16,6 +18,9 @@ namespace vdbfuse {
 /// differ, else its number in eight digits.
 void forEachView(const ViewSequence& views, const Progress& progress,
                  const std::function<void(const View& view, const std::string& name)>& write);
+
+/// The names as they are, where all can be file names and differ, else their numbers in eight digits.
+std::vector<std::string> fileNames(std::vector<std::string> names);
 
 /// The names that forEachView() gives.
 std::vector<std::string> fileNames(const ViewSequence& views);
@@ -38,6 +43,9 @@ std::string matrixText(const Eigen::MatrixXd& matrix);
 
 /// Shortest text that reads back as the same number.
 std::string exactText(double value);
+
+/// The numbers, each with a blank before it.
+std::string numbersText(std::initializer_list<double> numbers);
 
 /// Depth as whole numbers of `scale`, rounded, 0 where it is invalid. Throws InvalidArgument when one is
 /// above 65534 or rounds to 0.

@@ -28,12 +28,23 @@ fs::path maskIn(const fs::path& folder, const std::string& name) {
   return path;
 }
 
+}  // namespace
+
+std::vector<fs::path> maskPaths(const std::vector<std::string>& names, const fs::path& data,
+                                const fs::path& folder) {
+  if (!folder.empty() && !fs::is_directory(folder))
+    throw IoError(folder, "", "a folder of masks", fs::exists(folder) ? "a file" : "nothing of that name");
+  std::vector<fs::path> paths;
+  for (const std::string& name : names)
+    paths.push_back(folder.empty() ? maskBeside(data, name) : maskIn(folder, name));
+  return paths;
+}
+
 // Any kind of 8-bit picture will do; of 16 bits a reader of pictures would drop the lower eight.
-void checkHeader(const fs::path& path, const Projection& projection) {
+void checkMask(const fs::path& path, int width, int height, const std::string& image) {
   const PngHeader header = readPngHeader(path);
-  const int width = imageWidth(projection), height = imageHeight(projection);
   if (header.width != width || header.height != height) {
-    throw IoError(path, "", "a mask of " + sizeText(width, height) + " pixels as the depth map",
+    throw IoError(path, "", "a mask of " + sizeText(width, height) + " pixels as the " + image,
                   sizeText(header.width, header.height));
   }
   if (header.bits > 8)
@@ -48,21 +59,21 @@ Image<std::uint8_t> readMask(const fs::path& path) {
   return mask;
 }
 
-}  // namespace
-
 void addMasks(DepthSet& set, const fs::path& data, const fs::path& folder) {
-  if (!folder.empty() && !fs::is_directory(folder))
-    throw IoError(folder, "", "a folder of masks", fs::exists(folder) ? "a file" : "nothing of that name");
-  auto paths = std::make_shared<std::vector<fs::path>>();
   std::vector<ViewHeader> headers;
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < set.views.size(); ++i) {
     headers.push_back(set.views.header(i));
-    const std::string& name = headers.back().name;
-    paths->push_back(folder.empty() ? maskBeside(data, name) : maskIn(folder, name));
-    if (!paths->back().empty()) checkHeader(paths->back(), headers.back().projection);
+    names.push_back(headers.back().name);
   }
-  const auto found = static_cast<std::size_t>(
-      std::count_if(paths->begin(), paths->end(), [](const fs::path& path) { return !path.empty(); }));
+  const auto paths = std::make_shared<const std::vector<fs::path>>(maskPaths(names, data, folder));
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < paths->size(); ++i) {
+    if ((*paths)[i].empty()) continue;
+    checkMask((*paths)[i], imageWidth(headers[i].projection), imageHeight(headers[i].projection),
+              "depth map");
+    ++found;
+  }
   if (found == 0) return;
   set.notes.push_back("silhouette masks for " + std::to_string(found) + " of " +
                       counted(headers.size(), "view"));

@@ -6,8 +6,12 @@
 #include "formats/frames.h"
 #include "formats/image_writer.h"
 #include "formats/mvsnet_camera.h"
+#include "formats/photo_files.h"
+#include "formats/photo_writer.h"
+#include "io/file_bytes.h"
 #include "io/folder.h"
 #include "io/image_size.h"
+#include "io/picture.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/formats/mvsnet.h"
@@ -77,6 +81,34 @@ Detection detect(const std::filesystem::path& path) {
   return {Detection::Fit::Fully, counted(depths, "depth map") + " with cameras"};
 }
 
+Detection detectImages(const std::filesystem::path& path) {
+  using Fit = Detection::Fit;
+  const std::vector<std::string> cameras = stems(path / "cams", kCameraSuffix);
+  if (cameras.empty()) return {Fit::No, "no cams/*_cam.txt"};
+  const bool has_picture = std::any_of(cameras.begin(), cameras.end(), [&](const std::string& name) {
+    return !findPhoto(path / "images", name).empty();
+  });
+  if (!has_picture) return {Fit::Partly, "cams/*_cam.txt, but no pictures of these names in images/"};
+  return {Fit::Fully, counted(cameras.size(), "camera") + " and images/"};
+}
+
+// Sets the camera; returns whether it was scaled.
+bool addCamera(const std::filesystem::path& camera_path, PhotoFile& photo) {
+  const MvsnetCamera camera = readMvsnetCamera(camera_path);
+  const io::PictureHeader size = io::readPictureHeader(photo.picture);
+  const std::optional<FittedCamera> fitted =
+      fitToDepthMap(camera.pinhole, {size.width, size.height}, std::nullopt);
+  if (!fitted) {
+    throw IoError(camera_path, camera.intrinsics_place,
+                  "a principal point inside the " + sizeText(size.width, size.height) + " picture",
+                  numberText(camera.pinhole.cx) + ", " + numberText(camera.pinhole.cy));
+  }
+  photo.lens.camera = fitted->pinhole;
+  photo.world_from_camera = camera.world_from_camera;
+  photo.depth = camera.depths;
+  return fitted->scale != 1.0;
+}
+
 void write(const std::filesystem::path& folder, const ViewSequence& views, const WriteOptions&,
            const Progress& progress) {
   MvsnetWriter writer(folder);
@@ -121,6 +153,50 @@ DepthSetFormat mvsnetFormat() {
           detect,
           readMvsnet,
           write};
+}
+
+ImageSet readMvsnetImages(const std::filesystem::path& path, const ImageReadOptions& options) {
+  const std::vector<std::string> names = stems(path / "cams", kCameraSuffix);
+  if (names.empty()) throw IoError(path, "", "cameras (cams/*_cam.txt)", "none");
+  std::vector<PhotoFile> photos;
+  std::size_t scaled = 0;
+  for (const std::string& name : names) {
+    PhotoFile photo;
+    photo.name = name;
+    photo.picture = findPhoto(path / "images", name);
+    if (photo.picture.empty()) continue;
+    scaled += addCamera(path / "cams" / (name + std::string(kCameraSuffix)), photo) ? 1 : 0;
+    photos.push_back(std::move(photo));
+  }
+  if (photos.empty()) throw IoError(path / "images", "", "pictures of the cameras in cams/", "none");
+  const std::size_t unused = names.size() - photos.size();
+  ImageSet set = imageSetOf(path, std::move(photos), options);
+  addNote(set.notes, unused, "camera", "without a picture left out");
+  addNote(set.notes, scaled, "camera", "made for images of another size, scaled to the picture");
+  set.pose = "4x4 camera_from_world ('extrinsic'), x right, y down, z forward";
+  return set;
+}
+
+void writeMvsnetImages(const std::filesystem::path& folder, const PhotographSequence& photographs,
+                       const ImageWriteOptions&, const Progress& progress) {
+  createFolder(folder / "cams");
+  const std::vector<std::string> names = writePictures(folder, "images", photographs, progress);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const PhotographHeader& header = photographs.header(i);
+    const DepthInterval depths = header.depth.value_or(DepthInterval{});
+    io::writeFileBytes(folder / "cams" / (names[i] + std::string(kCameraSuffix)),
+                       mvsnetCameraText(header.camera, header.world_from_camera, depths.near, depths.far));
+  }
+}
+
+ImageSetFormat mvsnetImageFormat() {
+  return {"mvsnet",
+          "photographs with cameras in the folders of MVSNet",
+          "cams/00000000_cam.txt     'extrinsic' 4x4 camera_from_world, 'intrinsic' 3x3, depths\n"
+          "images/00000000.png|jpg   may be larger than the cameras were made for\n",
+          detectImages,
+          readMvsnetImages,
+          writeMvsnetImages};
 }
 
 }  // namespace vdbfuse

@@ -22,11 +22,15 @@ void expectWord(const std::filesystem::path& path, std::span<const TextLine> lin
     throw IoError(path, linePlace(lines, index), "'" + word + "'", "'" + found + "'");
 }
 
-void checkDepthLine(const std::filesystem::path& path, std::span<const TextLine> lines, std::size_t index) {
+DepthInterval readDepthLine(const std::filesystem::path& path, std::span<const TextLine> lines,
+                            std::size_t index) {
   const char* expected = "2 to 4 numbers (smallest depth, interval, ...)";
   if (index >= lines.size()) throw IoError(path, linePlace(lines, index), expected, "the end of the file");
-  const std::size_t count = finiteNumbers(path, lines[index]).size();
+  const std::vector<double> numbers = finiteNumbers(path, lines[index]);
+  const std::size_t count = numbers.size();
   if (count < 2 || count > 4) throw IoError(path, linePlace(lines, index), expected, std::to_string(count));
+  const double intervals = count > 2 ? numbers[2] : kDepthIntervals;
+  return {numbers[0], count > 3 ? numbers[3] : numbers[0] + numbers[1] * (intervals - 1)};
 }
 
 // Width of the image in whose middle the principal point would lie, per width of the depth map.
@@ -60,8 +64,8 @@ MvsnetCamera readMvsnetCamera(const std::filesystem::path& path) {
   const Eigen::MatrixXd extrinsic = readMatrix(path, lines, 1, 4, 4, "a 4x4 extrinsic matrix");
   expectWord(path, lines, 5, "intrinsic");
   const Eigen::MatrixXd intrinsic = readMatrix(path, lines, 6, 3, 3, "a 3x3 intrinsic matrix");
-  checkDepthLine(path, lines, 9);
   MvsnetCamera camera;
+  camera.depths = readDepthLine(path, lines, 9);
   camera.world_from_camera = poseFromMatrix(path, linePlace(lines, 1), extrinsic).inverse();
   camera.intrinsics_place = linePlace(lines, 6);
   camera.pinhole = pinholeFromMatrix(path, camera.intrinsics_place, intrinsic, 0, 0);

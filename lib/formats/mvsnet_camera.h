@@ -9,6 +9,7 @@
 #include "vdbfuse/geometry/projection.h"
 #include "vdbfuse/geometry/rigid_transform.h"
 #include "vdbfuse/io/pfm.h"
+#include "vdbfuse/sensor/photograph.h"
 
 namespace vdbfuse {
 
@@ -17,6 +18,9 @@ struct MvsnetCamera {
   RigidTransform world_from_camera = RigidTransform::Identity();
   Pinhole pinhole;
   std::string intrinsics_place;  ///< "line N", for messages
+  /// Of the last line: smallest depth, interval, number of intervals (192 where it is missing) and largest
+  /// depth (else what they reach). Not checked.
+  DepthInterval depths;
 };
 
 /// Throws IoError.
@@ -27,10 +31,10 @@ struct FittedCamera {
   double scale = 1.0;  ///< what the intrinsics were multiplied by
 };
 
-/// The camera for a depth map of the given size. Kept as it is when its principal point lies roughly in the
-/// middle of the depth map in at least one direction; else scaled by the ratio of depth map to picture, or by
-/// the nearest power of two, where that puts the principal point into the middle; else kept when the
-/// principal point lies inside the depth map (a crop), and nothing when it lies outside.
+/// The camera for a depth map (or picture) of the given size. Kept as it is when its principal point lies
+/// roughly in the middle of the depth map in at least one direction; else scaled by the ratio of depth map to
+/// picture, or by the nearest power of two, where that puts the principal point into the middle; else kept
+/// when the principal point lies inside the depth map (a crop), and nothing when it lies outside.
 std::optional<FittedCamera> fitToDepthMap(const Pinhole& camera, const PfmHeader& depth_map,
                                           std::optional<double> depth_per_picture);
 

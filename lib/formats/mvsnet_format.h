@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading the folder layout of MVSNet; see vdbfuse/formats/mvsnet.h for what it is.
+// Reading the folder layout of MVSNet, depth maps or photographs; see vdbfuse/formats/mvsnet.h for what it
+// is.
 #pragma once
 
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/image_set.h"
 
 namespace vdbfuse {
 
@@ -13,5 +15,16 @@ namespace vdbfuse {
 DepthSet readMvsnet(const std::filesystem::path& path, const ReadOptions& options);
 
 DepthSetFormat mvsnetFormat();
+
+/// The photographs of images/ that have a camera, with the depths its last line states. Cameras that were
+/// made for pictures of another size, a quarter in many of these sets, are scaled to the picture. Throws
+/// IoError.
+ImageSet readMvsnetImages(const std::filesystem::path& path, const ImageReadOptions& options);
+
+/// cams/ and images/.
+void writeMvsnetImages(const std::filesystem::path& folder, const PhotographSequence& photographs,
+                       const ImageWriteOptions& options, const Progress& progress);
+
+ImageSetFormat mvsnetImageFormat();
 
 }  // namespace vdbfuse

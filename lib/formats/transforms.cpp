@@ -10,7 +10,9 @@
 #include "formats/camera_text.h"
 #include "formats/frames.h"
 #include "formats/json_fields.h"
+#include "formats/photo_files.h"
 #include "io/folder.h"
+#include "io/picture.h"
 #include "io/raster.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
@@ -73,17 +75,21 @@ double focalLength(const FrameFields& fields, const char* key, const char* angle
   return *otherwise;
 }
 
-Pinhole cameraOf(const FrameFields& fields, const fs::path& depth, const ReadOptions& options) {
+enum class Intrinsics { Needed, Given };
+
+// `read_header` gives width and height of the image, where the frame does not say them.
+template <class ReadHeader>
+Pinhole cameraOf(const FrameFields& fields, const ReadHeader& read_header, Intrinsics intrinsics) {
   checkModel(fields);
   Pinhole camera;
   const auto width = fields.find("w"), height = fields.find("h");
   if (width && height) {
     camera.width = width->whole(1, kLargestSide), camera.height = height->whole(1, kLargestSide);
   } else {
-    const io::RasterHeader raster = io::readRasterHeader(depth);
-    camera.width = raster.width, camera.height = raster.height;
+    const auto header = read_header();
+    camera.width = header.width, camera.height = header.height;
   }
-  if (!options.intrinsics) {
+  if (intrinsics == Intrinsics::Needed) {
     camera.fx = focalLength(fields, "fl_x", "camera_angle_x", camera.width, std::nullopt);
     camera.fy = focalLength(fields, "fl_y", "camera_angle_y", camera.height, camera.fx);
     camera.cx = fields.numberOr("cx", 0.5 * camera.width) - 0.5;
@@ -95,9 +101,9 @@ Pinhole cameraOf(const FrameFields& fields, const fs::path& depth, const ReadOpt
   return camera;
 }
 
-RigidTransform poseOf(const Context& context, const JsonField& frame) {
+RigidTransform poseOf(const fs::path& file, const JsonField& frame) {
   const JsonField field = frame.at("transform_matrix");
-  return poseFromMatrix(context.file, field.place(), field.rows()) * openGlFromCamera();
+  return poseFromMatrix(file, field.place(), field.rows()) * openGlFromCamera();
 }
 
 fs::path pictureOf(const Context& context, const JsonField& frame) {
@@ -122,8 +128,10 @@ void addFrame(std::vector<Frame>& frames, Context& context, const FrameFields& f
     throw IoError(frame.depth, "", "the depth map of " + fields.frame.place(), "nothing of that name");
   frame.color = pictureOf(context, fields.frame);
   frame.header.name = (frame.color.empty() ? frame.depth : frame.color).stem().string();
-  frame.header.world_from_camera = poseOf(context, fields.frame);
-  frame.header.projection = cameraOf(fields, frame.depth, context.options);
+  frame.header.world_from_camera = poseOf(context.file, fields.frame);
+  frame.header.projection = cameraOf(
+      fields, [&] { return io::readRasterHeader(frame.depth); },
+      context.options.intrinsics ? Intrinsics::Given : Intrinsics::Needed);
   context.without_picture += fields.frame.find("file_path") && frame.color.empty() ? 1 : 0;
   context.masks += fields.frame.find("mask_path") ? 1 : 0;
   frames.push_back(std::move(frame));
@@ -188,6 +196,41 @@ Detection detect(const fs::path& path) {
   return {has_its_name ? Fit::Partly : Fit::No, "no frames with a transform_matrix"};
 }
 
+// Of one frame; its picture is empty where there is none.
+PhotoFile photoOf(const fs::path& file, const FrameFields& fields) {
+  PhotoFile photo;
+  const auto stated = fields.frame.find("file_path");
+  if (!stated) return {};
+  photo.picture = pathInside(file.parent_path(), stated->text(), file, stated->place());
+  if (!hasPictureExtension(photo.picture))
+    photo.picture = findPhoto(photo.picture.parent_path(), photo.picture.filename().string());
+  if (!isFile(photo.picture)) return {};
+  photo.name = photo.picture.stem().string();
+  photo.world_from_camera = poseOf(file, fields.frame);
+  photo.lens.camera = cameraOf(
+      fields, [&] { return io::readPictureHeader(photo.picture); }, Intrinsics::Needed);
+  if (const auto mask = fields.frame.find("mask_path"))
+    photo.mask = pathInside(file.parent_path(), mask->text(), file, mask->place());
+  return photo;
+}
+
+Detection detectImages(const fs::path& path) {
+  using Fit = Detection::Fit;
+  const Detection found = detect(path);
+  if (found.fit == Fit::No) return found;
+  try {
+    const fs::path file = fileIn(path);
+    const JsonField root = JsonField::readFile(file), list = root.at("frames");
+    std::size_t pictures = 0;
+    for (std::size_t i = 0; i < list.size(); ++i) pictures += list[i].find("file_path") ? 1 : 0;
+    if (pictures > 0 && list[0].find("transform_matrix"))
+      return {Fit::Fully, counted(pictures, "picture") + " named in " + file.filename().string()};
+  } catch (const Error&) {
+    return {Fit::Partly, "a broken transforms.json"};
+  }
+  return {Fit::Partly, "no frames with file_path and transform_matrix"};
+}
+
 }  // namespace
 
 DepthSet readTransforms(const fs::path& path, const ReadOptions& options) {
@@ -201,6 +244,23 @@ DepthSet readTransforms(const fs::path& path, const ReadOptions& options) {
     throw IoError(context.file, "frames", "a frame with depth_file_path or depth_path", "none");
   DepthSet set = setOfFrames(context.file, std::move(frames), formatOf(root), options);
   addNotes(set, context, root);
+  return set;
+}
+
+ImageSet readTransformsImages(const fs::path& path, const ImageReadOptions& options) {
+  const fs::path file = fileIn(path);
+  if (file.empty()) throw IoError(path, "", "transforms.json", "nothing of that name");
+  const JsonField root = JsonField::readFile(file), list = root.at("frames");
+  std::vector<PhotoFile> photos;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    PhotoFile photo = photoOf(file, {root, list[i]});
+    if (!photo.picture.empty()) photos.push_back(std::move(photo));
+  }
+  if (photos.empty()) throw IoError(file, "frames", "a frame with a picture (file_path)", "none");
+  const std::size_t missing = list.size() - photos.size();
+  ImageSet set = imageSetOf(file, std::move(photos), options);
+  if (missing > 0) set.notes.push_back(counted(missing, "photograph") + " whose picture is missing left out");
+  set.pose = "4x4 world_from_camera, x right, y up, z backward (OpenGL)";
   return set;
 }
 
@@ -218,6 +278,19 @@ DepthSetFormat transformsFormat() {
       detect,
       readTransforms,
       writeTransforms};
+}
+
+ImageSetFormat transformsImageFormat() {
+  return {"transforms",
+          "photographs of transforms.json of nerfstudio and instant-ngp",
+          "transforms.json       fl_x, fl_y, cx, cy, w, h (or camera_angle_x), k1, k2, p1, p2, k3; centres "
+          "at .5\n"
+          "  frames[].transform_matrix    4x4 world_from_camera, camera x right, y up, z backward\n"
+          "  frames[].file_path           the picture; its extension may be missing\n"
+          "  frames[].mask_path           optional, black where the object is not\n",
+          detectImages,
+          readTransformsImages,
+          writeTransformsImages};
 }
 
 }  // namespace vdbfuse

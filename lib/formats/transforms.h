@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// transforms.json of nerfstudio and instant-ngp, with depth maps:
+// transforms.json of nerfstudio and instant-ngp, with depth maps or photographs alone:
 //
 //   fl_x, fl_y, cx, cy, w, h         for all frames, or in each; pixel centres at .5. fl_y is fl_x where it
 //                                    is missing, cx and cy the middle, w and h the depth map's size
@@ -15,12 +15,15 @@
 //                                    where they do, for that reason. Floats without a stated unit are taken
 //                                    as lengths, for scripts write them so.
 //
-// applied_transform and applied_scale tell how the poses were made and change nothing. Masks are left out.
+//   frames[].mask_path               the mask of the photograph; with depth maps it is left out
+//
+// applied_transform and applied_scale tell how the poses were made and change nothing.
 #pragma once
 
 #include <filesystem>
 
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/image_set.h"
 
 namespace vdbfuse {
 
@@ -34,5 +37,14 @@ void writeTransforms(const std::filesystem::path& folder, const ViewSequence& vi
                      const WriteOptions& options, const Progress& progress);
 
 DepthSetFormat transformsFormat();
+
+/// The pictures of the frames. `path` as above. Throws IoError.
+ImageSet readTransformsImages(const std::filesystem::path& path, const ImageReadOptions& options);
+
+/// transforms.json and images/.
+void writeTransformsImages(const std::filesystem::path& folder, const PhotographSequence& photographs,
+                           const ImageWriteOptions& options, const Progress& progress);
+
+ImageSetFormat transformsImageFormat();
 
 }  // namespace vdbfuse

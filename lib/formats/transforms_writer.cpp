@@ -4,6 +4,7 @@
 
 #include "formats/frames.h"
 #include "formats/image_writer.h"
+#include "formats/photo_writer.h"
 #include "formats/transforms.h"
 #include "io/file_bytes.h"
 #include "vdbfuse/base/errors.h"
@@ -67,6 +68,16 @@ Json poseOf(const RigidTransform& world_from_camera) {
   return rows;
 }
 
+// Everything but the frames: the camera there where it is one for all, else with each frame.
+Json rootOf(const std::vector<Pinhole>& cameras, Json& frames) {
+  Json root = {{"camera_model", "OPENCV"}};
+  const bool is_one =
+      std::all_of(cameras.begin(), cameras.end(), [&](const Pinhole& c) { return c == cameras[0]; });
+  if (is_one) addCamera(root, cameras.front());
+  for (std::size_t i = 0; i < cameras.size() && !is_one; ++i) addCamera(frames[i], cameras[i]);
+  return root;
+}
+
 }  // namespace
 
 void writeTransforms(const std::filesystem::path& folder, const ViewSequence& views,
@@ -86,13 +97,24 @@ void writeTransforms(const std::filesystem::path& folder, const ViewSequence& vi
                       {"depth_path", "depth/" + name + ".png"},
                       {"transform_matrix", poseOf(view.world_from_camera)}});
   });
-  Json root = {{"camera_model", "OPENCV"}};
-  const bool is_one =
-      std::all_of(cameras.begin(), cameras.end(), [&](const Pinhole& c) { return c == cameras[0]; });
-  if (is_one) addCamera(root, cameras.front());
-  for (std::size_t i = 0; i < cameras.size() && !is_one; ++i) addCamera(frames[i], cameras[i]);
+  Json root = rootOf(cameras, frames);
   root["depth_unit_scale_factor"] = step;
   root["integer_depth_scale"] = step;
+  root["frames"] = std::move(frames);
+  io::writeFileBytes(folder / "transforms.json", textOf(root));
+}
+
+void writeTransformsImages(const std::filesystem::path& folder, const PhotographSequence& photographs,
+                           const ImageWriteOptions&, const Progress& progress) {
+  std::vector<Pinhole> cameras;
+  Json frames = Json::array();
+  const std::vector<std::string> names = writePictures(folder, "images", photographs, progress);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    cameras.push_back(photographs.header(i).camera);
+    frames.push_back({{"file_path", "images/" + names[i] + ".png"},
+                      {"transform_matrix", poseOf(photographs.header(i).world_from_camera)}});
+  }
+  Json root = rootOf(cameras, frames);
   root["frames"] = std::move(frames);
   io::writeFileBytes(folder / "transforms.json", textOf(root));
 }

@@ -12,6 +12,7 @@
 #include "io/encoded_picture.h"
 #include "io/file_bytes.h"
 #include "io/image_size.h"
+#include "io/rgba_picture.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse {
@@ -55,8 +56,8 @@ class Decoder {
 
   const spng_ihdr& ihdr() const { return ihdr_; }
 
-  void decode(void* pixels, std::size_t size, int format) {
-    check(spng_decode_image(context_.get(), pixels, size, format, 0));
+  void decode(void* pixels, std::size_t size, int format, int flags) {
+    check(spng_decode_image(context_.get(), pixels, size, format, flags));
     check(spng_decode_chunks(context_.get()));  // up to the end mark: a file cut behind its pixels is cut too
   }
 
@@ -102,12 +103,12 @@ class Decoder {
 };
 
 template <class T>
-Image<T> decodeImage(Decoder& decoder, int format) {
+Image<T> decodeImage(Decoder& decoder, int format, int flags = 0) {
   const spng_ihdr& ihdr = decoder.ihdr();
   const std::size_t size = sizeof(T) * ihdr.width * ihdr.height;
   decoder.checkLength(std::size_t{ihdr.width} * ihdr.height * headerOf(ihdr).channels * ihdr.bit_depth / 8);
   Image<T> image(static_cast<int>(ihdr.width), static_cast<int>(ihdr.height));
-  decoder.decode(image.data(), size, format);
+  decoder.decode(image.data(), size, format, flags);
   return image;
 }
 
@@ -148,6 +149,19 @@ Image<Rgb8> readPngRgb(const std::filesystem::path& path) {
 Image<Rgb8> io::decodePng(const EncodedPicture& picture) {
   Decoder decoder(picture);
   return decodeImage<Rgb8>(decoder, SPNG_FMT_RGB8);
+}
+
+io::RgbaPicture io::readPngRgba(const std::filesystem::path& path) {
+  Decoder decoder(path, SIZE_MAX);
+  RgbaPicture picture;
+  picture.is_grey = decoder.ihdr().color_type == SPNG_COLOR_TYPE_GRAYSCALE ||
+                    decoder.ihdr().color_type == SPNG_COLOR_TYPE_GRAYSCALE_ALPHA;
+  if (decoder.ihdr().bit_depth == 16) {
+    picture.pixels = decodeImage<Rgba<std::uint16_t>>(decoder, SPNG_FMT_RGBA16, SPNG_DECODE_TRNS);
+  } else {
+    picture.pixels = decodeImage<Rgba<std::uint8_t>>(decoder, SPNG_FMT_RGBA8, SPNG_DECODE_TRNS);
+  }
+  return picture;
 }
 
 Image<std::uint8_t> readPngGrey8(const std::filesystem::path& path) {

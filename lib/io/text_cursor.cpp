@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "vdbfuse/base/errors.h"
 
@@ -43,6 +44,20 @@ std::string_view TextCursor::restOfLine() {
 double TextCursor::number() { return parse(word()); }
 double TextCursor::numberOnLine() { return parse(wordOnLine()); }
 
+double TextCursor::finite() {
+  const std::string_view text = word();
+  const double value = parse(text);
+  if (!std::isfinite(value)) fail("a finite number", text);
+  return value;
+}
+
+std::int64_t TextCursor::whole(std::int64_t most) {
+  const std::string_view text = word();
+  const std::optional<std::int64_t> value = parseInteger(text);
+  if (!value || *value < 0 || *value > most) fail("a whole number from 0 to " + std::to_string(most), text);
+  return *value;
+}
+
 double TextCursor::parse(std::string_view word) const {
   const std::string_view digits = !word.empty() && word.front() == '+' ? word.substr(1) : word;
   double value = 0;
@@ -56,10 +71,14 @@ void TextCursor::fail(const std::string& expected, std::string_view found) const
   failWith(expected, word_start_ >= text_.size() ? "the end of the file" : "the end of the line");
 }
 
-void TextCursor::failWith(const std::string& expected, const std::string& description) const {
+std::string TextCursor::place() const {
   const auto line =
       1 + std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(word_start_), '\n');
-  throw IoError(path_, "line " + std::to_string(line), expected, description);
+  return "line " + std::to_string(line);
+}
+
+void TextCursor::failWith(const std::string& expected, const std::string& description) const {
+  throw IoError(path_, place(), expected, description);
 }
 
 std::optional<std::int64_t> parseInteger(std::string_view word) {

@@ -28,6 +28,12 @@ class TextCursor {
   /// The next word as a number. IoError when it is none.
   double number();
   double numberOnLine();
+  /// The next word as a finite number. IoError when it is none.
+  double finite();
+  /// The next word as a whole number in [0, most]. IoError when it is none.
+  std::int64_t whole(std::int64_t most);
+  /// "line N" of the last word read.
+  std::string place() const;
   /// Throws an IoError at the last word read, which was `found`; empty means that line or text ended.
   [[noreturn]] void fail(const std::string& expected, std::string_view found) const;
   /// The same with a description of what was found.

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "stereo/matching_constants.h"
+#include "stereo/plane_fit.h"
 #include "stereo/reference_level.h"
 #include "stereo/votes.h"
 #include "vdbfuse/base/parallel.h"
@@ -11,13 +14,13 @@
 namespace vdbfuse::stereo {
 namespace {
 
-constexpr int kFirstLevelSide = 400;  // pixels, longest side of the level of the first sweep at most
-constexpr float kFirstStep = 1.0F;    // pixels of that level
-constexpr float kExactStep = 0.5F;    // the same where no surface sweeps follow
-constexpr float kFirstThreshold = 0.5F, kSurfaceThreshold = 0.3F;
-constexpr float kLeastDeviation = 1.5F / 255;  // of the brightness in a window with texture
-constexpr int kSmoothRadius = 3;
-constexpr float kSmoothScale = 1.5F;  // pixels of the level
+constexpr int kFirstLevelSide = 400;          // pixels, longest side of the level of the first sweep at most
+constexpr float kFirstStep = 1.0F;            // pixels of that level
+constexpr float kExactStep = 0.5F;            // the same where no surface sweeps follow
+constexpr float kOtherViewsWeight = 0.5F;     // of another view's depth, beside a partner's peak
+constexpr float kOtherViewsCurvature = 0.3F;  // how well it knows its place
+constexpr int kSmoothRadius = 4;
+constexpr float kSmoothScale = 0.75F;  // pixels of the level
 
 // One level of a match.
 struct Stage {
@@ -43,10 +46,36 @@ ImageMotion motionOf(const MatchInput& input, std::size_t partner, std::size_t l
                      (*other.levels)[level].camera, other.world_from_camera);
 }
 
-Stage stageOf(const MatchInput& input, int level, const StereoOptions& options, float threshold) {
+// Leaves out pixels whose rays miss the box.
+void leaveOutBeside(const Box& box, const Pinhole& camera, const RigidTransform& world_from_camera,
+                    Image<float>& inverse_spread) {
+  const Eigen::Vector3d eye = world_from_camera.translation();
+  parallelFor(static_cast<std::size_t>(camera.height), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < camera.width; ++x) {
+        if (inverse_spread(x, y) == 0) continue;
+        const Eigen::Vector3d ray = world_from_camera.linear() * unproject(camera, x, y, 1.0);
+        double from = 0, to = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+          const double a = (box.min()[axis] - eye[axis]) / ray[axis],
+                       b = (box.max()[axis] - eye[axis]) / ray[axis];
+          from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+        }
+        if (!(from <= to)) inverse_spread(x, y) = 0;
+      }
+    }
+  });
+}
+
+Stage stageOf(const MatchInput& input, int level, const StereoOptions& options, double threshold) {
   const auto at = static_cast<std::size_t>(level);
   Stage stage;
-  stage.reference = referenceLevel((*input.reference.levels)[at], options.window_px / 2, kLeastDeviation);
+  stage.reference = referenceLevel((*input.reference.levels)[at], options.window_px / 2,
+                                   static_cast<float>(kLeastDeviation));
+  if (options.domain)
+    leaveOutBeside(*options.domain, (*input.reference.levels)[at].camera, input.reference.world_from_camera,
+                   stage.reference.inverse_spread);
   for (std::size_t j = 0; j < input.partners.size(); ++j) {
     stage.pictures.push_back(&(*input.partners[j].levels)[at]);
     stage.motions.push_back(motionOf(input, j, at));
@@ -54,8 +83,8 @@ Stage stageOf(const MatchInput& input, int level, const StereoOptions& options, 
   stage.pixel = inverseDepthOfPixel(input, level);
   stage.first = static_cast<float>(1 / input.depths.far),
   stage.last = static_cast<float>(1 / input.depths.near);
-  const float deviation = kLeastDeviation * static_cast<float>(kWhite);
-  stage.limits = {threshold,
+  const auto deviation = static_cast<float>(kLeastDeviation * kWhite);
+  stage.limits = {static_cast<float>(threshold),
                   deviation * deviation * static_cast<float>(options.window_px * options.window_px)};
   return stage;
 }
@@ -63,6 +92,7 @@ Stage stageOf(const MatchInput& input, int level, const StereoOptions& options, 
 void store(const Mode& mode, float second, float inverse_depth, float step, int x, int y, DepthLayer& layer) {
   layer.inverse_depth(x, y) = inverse_depth;
   layer.score(x, y) = mode.score;
+  layer.support(x, y) = mode.support;
   layer.second(x, y) = second;
   layer.voters(x, y) = mode.voters;
   layer.spread2(x, y) = mode.spread2 * step * step;
@@ -119,7 +149,7 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
     for (std::size_t j = 0; j < stage.pictures.size(); ++j)
       sweepForAll(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, static_cast<int>(j),
                   memory, lists);
-    Voting voting(kVoteSigma * kExactStep / step_px, layers.size() + 1);
+    Voting voting(static_cast<float>(kVoteSigma) * kExactStep / step_px, layers.size() + 1);
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
       std::vector<Peak> peaks = peaksOf(lists, pixel);
       for (Peak& peak : peaks) peak.curvature = 1;
@@ -134,14 +164,54 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
   return layers;
 }
 
+// Depths of other views as peaks at (w − from)/step.
+void addOthers(const std::vector<Testimony>& others, int x, int y, float from, float step,
+               std::vector<Peak>& peaks) {
+  for (std::size_t v = 0; v < others.size(); ++v) {
+    const float weight = others[v].weight(x, y);
+    if (weight > 0)
+      peaks.push_back({(others[v].inverse_depth(x, y) - from) / step, kOtherViewsWeight * weight,
+                       kOtherViewsCurvature, kOtherViews + static_cast<std::int32_t>(v)});
+  }
+}
+
+// The depth that most of the pixel's own and those of other views agree with.
+DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<Testimony>& others) {
+  DepthLayer layer = own;
+  const float step = kExactStep * stage.pixel;
+  parallelFor(static_cast<std::size_t>(own.score.height()), 16, [&](std::size_t begin, std::size_t end) {
+    Voting voting(static_cast<float>(kVoteSigma), 1);
+    std::vector<Peak> peaks;
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < own.score.width(); ++x) {
+        if (stage.reference.inverse_spread(x, y) == 0) continue;
+        peaks.clear();
+        if (own.inverse_depth(x, y) > 0)
+          peaks.push_back(
+              {(own.inverse_depth(x, y) - stage.first) / step, own.score(x, y), kOtherViewsCurvature, 0});
+        addOthers(others, x, y, stage.first, step, peaks);
+        const Modes& modes = voting.count(peaks);
+        if (modes.empty()) continue;
+        layer.inverse_depth(x, y) = stage.first + modes[0].step * step;
+        layer.score(x, y) = modes[0].score + modes[0].support;
+      }
+    }
+  });
+  return layer;
+}
+
 // Peaks of all partners around a surface.
-DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach, float step_px) {
+DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach, float step_px,
+                        const std::vector<Testimony>& others = {}) {
   const float step = step_px * stage.pixel;
   const SweepRange range{-step * static_cast<float>(reach), step, 2 * reach + 1};
   DepthLayer layer = before;
   for (float& score : layer.score) score *= 0.5F;
   const Image<float> base =
-      filled(smoothed(before, kSmoothRadius, kSmoothScale * stage.pixel), 0.5F * (stage.first + stage.last));
+      filled(planeFitted(before.inverse_depth, before.score,
+                         {kSmoothRadius, kSmoothScale * stage.pixel, 4 * kSmoothScale * stage.pixel, 3}),
+             0.5F * (stage.first + stage.last));
   forEachTile(stage.reference, [&](const TileRect& rect) {
     SweepTile tile;
     SweepMemory memory;
@@ -149,7 +219,7 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
     std::vector<BestPeaks> best(stage.pictures.size());
     for (std::size_t j = 0; j < stage.pictures.size(); ++j)
       sweepForBest(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, memory, best[j]);
-    Voting voting(kVoteSigma * kExactStep / step_px, 2);
+    Voting voting(static_cast<float>(kVoteSigma) * kExactStep / step_px, 2);
     std::vector<Peak> peaks;
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
       peaks.clear();
@@ -158,6 +228,7 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
         peaks.push_back({best[j].step[pixel], best[j].score[pixel], best[j].curvature[pixel],
                          static_cast<std::int32_t>(j)});
       }
+      addOthers(others, x, y, base(x, y) + range.first, range.step, peaks);
       const Modes& modes = voting.count(peaks);
       if (modes.empty()) return;
       const float w = base(x, y) + range.first + modes[0].step * range.step;
@@ -199,15 +270,11 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
   std::vector<DepthLayer> layers = planeSweep(stageOf(input, level, options, kFirstThreshold),
                                               is_exact ? kExactStep : kFirstStep, options.hypotheses);
   if (is_exact) return layers;
-  {
-    const Stage stage = stageOf(input, level, options, kSurfaceThreshold);
-    for (DepthLayer& layer : layers) layer = surfaceSweep(stage, layer, 4, 0.5F);
-  }
-  while (level > 0) {
-    --level;
+  for (bool is_first = true; level >= 0; --level, is_first = false) {
     const Stage stage = stageOf(input, level, options, kSurfaceThreshold);
     for (DepthLayer& layer : layers) {
-      layer = doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
+      if (!is_first)
+        layer = doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
       for (int sweep = 0; sweep < (level == 0 ? options.surface_sweeps : 1); ++sweep)
         layer = surfaceSweep(stage, layer, sweep == 0 ? 5 : 4, 0.5F);
     }
@@ -215,9 +282,10 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
   return layers;
 }
 
-DepthLayer sweepAlong(const MatchInput& input, const StereoOptions& options, const DepthLayer& surface,
-                      int reach, float step_px) {
-  return surfaceSweep(stageOf(input, 0, options, kSurfaceThreshold), surface, reach, step_px);
+DepthLayer crossChecked(const MatchInput& input, const StereoOptions& options, const DepthLayer& own,
+                        const std::vector<Testimony>& others) {
+  const Stage stage = stageOf(input, 0, options, kSurfaceThreshold);
+  return surfaceSweep(stage, agreed(stage, own, others), 4, 0.5F, others);
 }
 
 }  // namespace vdbfuse::stereo

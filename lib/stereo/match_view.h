@@ -3,8 +3,10 @@
 // then along the surface that was found, on finer and finer levels.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include "stereo/cross_view.h"
 #include "stereo/picture_pyramid.h"
 #include "stereo/surface.h"
 #include "vdbfuse/geometry/rigid_transform.h"
@@ -13,7 +15,7 @@
 namespace vdbfuse::stereo {
 
 struct PosedPyramid {
-  const std::vector<PictureLevel>* levels = nullptr;
+  std::shared_ptr<const std::vector<PictureLevel>> levels;
   RigidTransform world_from_camera = RigidTransform::Identity();
 };
 
@@ -33,9 +35,9 @@ float inverseDepthOfPixel(const MatchInput& input, int level);
 /// Of level 0, one for each of StereoOptions::hypotheses, the best first.
 std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& options);
 
-/// One more sweep along `surface` at level 0, ± `reach` steps of `step_px` pixels. What is not found keeps
-/// the value and half the score.
-DepthLayer sweepAlong(const MatchInput& input, const StereoOptions& options, const DepthLayer& surface,
-                      int reach, float step_px);
+/// Weighs the depths against what other views say of them, and sweeps once more along the result. What is not
+/// found keeps its value and half its score.
+DepthLayer crossChecked(const MatchInput& input, const StereoOptions& options, const DepthLayer& own,
+                        const std::vector<Testimony>& others);
 
 }  // namespace vdbfuse::stereo

@@ -29,7 +29,7 @@ constexpr std::size_t kFewest = 2;
 // What is wrong with a partner, in degrees of angle that one would rather go further for.
 constexpr double kSameSideDeg = 15;    // another partner lies on the same side; at most twice
 constexpr double kSamePlaceDeg = 90;   // another partner lies at the same place
-constexpr double kOffLimitsDeg = 200;  // by half at the limits, by 1.5 at no angle and at twice the largest
+constexpr double kOffLimitsDeg = 200;  // the angle is half the smallest or twice the largest
 constexpr double kOffScaleDeg = 200;
 constexpr double kMiddleUnseenDeg = 1000;
 
@@ -68,10 +68,10 @@ double scaleRatio(const PhotographHeader& a, const PhotographHeader& b, const Ei
   return std::max(size(a) / size(b), size(b) / size(a));
 }
 
+// Below the smallest angle depths are uncertain at once; beyond the largest, windows differ more and more.
 double offLimits(double angle_deg, const PartnerOptions& options) {
-  const double low = options.min_angle_deg > 0 ? 1 - angle_deg / options.min_angle_deg : 0;
-  const double off = std::max(low, angle_deg / options.max_angle_deg - 1);
-  return off > 0 ? kOffLimitsDeg * (0.5 + off) : 0;
+  if (angle_deg < options.min_angle_deg) return kOffLimitsDeg * (1.5 - angle_deg / options.min_angle_deg);
+  return kOffLimitsDeg * std::max(0.0, angle_deg / options.max_angle_deg - 1);
 }
 
 std::vector<std::vector<std::size_t>> nearestPoses(const std::vector<PhotographHeader>& photographs,

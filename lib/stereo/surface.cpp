@@ -60,7 +60,7 @@ void fillFrom(const Image<float>& half, Image<float>& full) {
 
 DepthLayer emptyLayer(int width, int height) {
   const Image<float> zero(width, height);
-  return {zero, zero, zero, Image<std::uint8_t>(width, height), zero};
+  return {zero, zero, zero, zero, Image<std::uint8_t>(width, height), zero};
 }
 
 Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
@@ -71,35 +71,6 @@ Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
   for (std::size_t level = pyramid.size() - 1; level > 0; --level)
     fillFrom(pyramid[level], pyramid[level - 1]);
   return std::move(pyramid.front());
-}
-
-Image<float> smoothed(const DepthLayer& layer, int radius, float scale) {
-  const Image<float>& from = layer.inverse_depth;
-  const int width = from.width(), height = from.height();
-  Image<float> result(width, height);
-  const float inverse_scale2 = 1 / (scale * scale);
-  forEachRow(height, [&](int y) {
-    std::vector<float> sum(static_cast<std::size_t>(width)), weight(static_cast<std::size_t>(width));
-    for (int dy = -radius; dy <= radius; ++dy) {
-      if (y + dy < 0 || y + dy >= height) continue;
-      for (int dx = -radius; dx <= radius; ++dx) {
-        const float* other = from.row(y + dy) + dx;
-        const float* score = layer.score.row(y + dy) + dx;
-        const float* own = from.row(y);
-        for (int x = std::max(0, -dx); x < std::min(width, width - dx); ++x) {
-          const float distance = other[x] - own[x];
-          const float far = 1 + distance * distance * inverse_scale2;
-          const float w = score[x] / (far * far);
-          sum[static_cast<std::size_t>(x)] += w * other[x], weight[static_cast<std::size_t>(x)] += w;
-        }
-      }
-    }
-    for (int x = 0; x < width; ++x) {
-      const float w = weight[static_cast<std::size_t>(x)];
-      if (from(x, y) != 0) result(x, y) = w > 0 ? sum[static_cast<std::size_t>(x)] / w : from(x, y);
-    }
-  });
-  return result;
 }
 
 DepthLayer doubled(const DepthLayer& layer, int width, int height, float step) {

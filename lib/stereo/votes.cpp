@@ -71,9 +71,10 @@ Mode Voting::shifted(const std::vector<Peak>& peaks, float step) const {
   forEachVoter(
       peaks, [&](float k) { return weight(k - step); },
       [&](const Peak& peak, float score) {
+        const bool is_partner = peak.partner < kOtherViews;
+        (is_partner ? mode.score : mode.support) += score;
         const float distance = peak.step - step;
-        mode.score += score;
-        if (std::abs(distance) > 2 * sigma_) return;
+        if (!is_partner || std::abs(distance) > 2 * sigma_) return;
         ++mode.voters;
         spread2 += score * distance * distance, weights += score;
       });

@@ -11,17 +11,18 @@
 
 namespace vdbfuse::stereo {
 
-/// W(d) = exp(−d²/(2·kVoteSigma²)), d in steps of half a pixel of the widest partner.
-inline constexpr float kVoteSigma = 2.0F;
-
 /// A mode of C(k) = Σ_j max_i S_ji W(k − k_ji): every partner votes once, with its best peak
 /// near k.
 struct Mode {
   float step = 0;           ///< k, by mean shift
-  float score = 0;          ///< C(k); at most the number of partners
+  float score = 0;          ///< C(k) of the partners; at most their number
+  float support = 0;        ///< C(k) of other views' depths (Peak::partner from kOtherViews on)
   std::uint8_t voters = 0;  ///< partners with a peak within two sigma
   float spread2 = 0;        ///< mean square distance of their peaks from k, in steps
 };
+
+/// Peaks of other views' depths have numbers from here on.
+inline constexpr std::int32_t kOtherViews = 1 << 16;
 
 /// What one pixel voted for, the best first; modes nearer than three sigma to a better one are left out.
 using Modes = std::vector<Mode>;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer's program for the readers of data sets. The samples of one format (VDBFUSE_FUZZ_FORMAT) are
-// written into memory-backed files once; an input is one byte that picks a file of them and the bytes that
-// take its place. Then the whole set is read, all views included. Whatever is thrown must be a
-// vdbfuse::Error, and what is read must not be empty. VDBFUSE_FUZZ_SEEDS names a folder that the files
-// themselves are written to as first inputs.
+// libFuzzer's program for the readers of data sets, of depth maps and of photographs. The samples of one
+// format (VDBFUSE_FUZZ_FORMAT) are written into memory-backed files once; an input is one byte that picks a
+// file of them and the bytes that take its place. Then the whole set is read, all views included. Whatever is
+// thrown must be a vdbfuse::Error, and what is read must not be empty. VDBFUSE_FUZZ_SEEDS names a folder that
+// the files themselves are written to as first inputs.
 #include <unistd.h>
 
 #include <cstdint>
@@ -15,10 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/image_samples.h"
 #include "formats/samples.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/image_set.h"
 
 namespace {
 
@@ -38,7 +40,23 @@ struct Target {
   fs::path input;  // what is read
   std::string format;
   std::string original;
+  void (*read)(const fs::path& input, const std::string& format) = nullptr;
 };
+
+// A damaged file is still of its format: its reader must cope.
+void readDepths(const fs::path& input, const std::string& format) {
+  vdbfuse::ReadOptions options;
+  options.format = format;
+  const vdbfuse::DepthSet set = readDepthSet(input, options);
+  if (set.views.empty()) std::abort();
+  for (std::size_t i = 0; i < set.views.size(); ++i) set.views.load(i);
+}
+
+void readPhotographs(const fs::path& input, const std::string& format) {
+  const vdbfuse::ImageSet set = vdbfuse::readImageSet(input, {format, {}});
+  if (set.photographs.empty()) std::abort();
+  for (std::size_t i = 0; i < set.photographs.size(); ++i) set.photographs.load(i);
+}
 
 fs::path scratchFolder() {
   const fs::path memory = "/dev/shm";
@@ -52,7 +70,12 @@ class Harness {
     const char* format = std::getenv("VDBFUSE_FUZZ_FORMAT");
     int number = 0;
     for (const vdbfuse::test::Sample& sample : vdbfuse::test::samples()) {
-      if (format == nullptr || sample.format == format) add(sample, folder_ / std::to_string(number++));
+      if (format == nullptr || sample.format == format)
+        add(sample, readDepths, folder_ / std::to_string(number++));
+    }
+    for (const vdbfuse::test::Sample& sample : vdbfuse::test::imageSamples()) {
+      if (format == nullptr || sample.format == format)
+        add(sample, readPhotographs, folder_ / std::to_string(number++));
     }
     if (targets_.empty() || targets_.size() > 255) {
       std::fprintf(stderr, "VDBFUSE_FUZZ_FORMAT: no sample of that format, or too many files\n");
@@ -74,13 +97,14 @@ class Harness {
   }
 
  private:
-  void add(const vdbfuse::test::Sample& sample, const fs::path& folder) {
+  void add(const vdbfuse::test::Sample& sample, void (*read)(const fs::path&, const std::string&),
+           const fs::path& folder) {
     fs::create_directories(folder);
     sample.write(folder);
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       if (entry.is_regular_file())
         targets_.push_back({entry.path(), sample.input.empty() ? folder : folder / sample.input,
-                            sample.format, contentsOf(entry.path())});
+                            sample.format, contentsOf(entry.path()), read});
     }
   }
 
@@ -94,12 +118,7 @@ class Harness {
 
   static void read(const Target& target) {
     try {
-      // A damaged file is still of its format: its reader must cope.
-      vdbfuse::ReadOptions options;
-      options.format = target.format;
-      const vdbfuse::DepthSet set = readDepthSet(target.input, options);
-      if (set.views.empty()) std::abort();
-      for (std::size_t i = 0; i < set.views.size(); ++i) set.views.load(i);
+      target.read(target.input, target.format);
     } catch (const vdbfuse::Error&) {
     }
   }

@@ -17,7 +17,7 @@ fuzzer=$PWD/build-fuzz/tests/fuzz/vdbfuse_fuzz
 formats=("$@")
 if [ ${#formats[@]} -eq 0 ]; then
   # PCD is read by the Point Cloud Library, which is not ours to instrument; its header is ours, and tested.
-  mapfile -t formats < <(sed -nE 's/^ *\{"([a-z0-9_]+)", "[^"]*", [^,]*, .*/\1/p' tests/formats/samples.cpp | sort -u | grep -v '^pcd$')
+  mapfile -t formats < <(sed -nE 's/^ *\{"([a-z0-9_]+)", "[^"]*", [^,]*, .*/\1/p' tests/formats/{,image_}samples.cpp | sort -u | grep -v '^pcd$')
 fi
 
 # fuzz FORMAT SECONDS
