@@ -107,7 +107,8 @@ double occluderDistance(const Vector3d& p) {
   const double wall = std::max(bend, boxDistance(p, kWallCenter, kWallHalf));
   const double nearest = std::clamp(std::round(p.x() / kPostPitch + 0.5 * (kPosts - 1)), 0.0, kPosts - 1.0);
   const double x = postX(static_cast<int>(nearest));
-  const double post = capsuleDistance(p, {x, kPostY, kFloorTop}, {x, kPostY, kPostTop}, kPostRadius);
+  const Vector3d in_post(x, kPostY, std::clamp(p.z(), kFloorTop, kPostTop));
+  const double post = (p - in_post).norm() - kPostRadius;
   return std::min({wall, post, boxDistance(p, kFloorCenter, kFloorHalf)});
 }
 

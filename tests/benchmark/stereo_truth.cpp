@@ -37,8 +37,8 @@ const std::map<std::string, StereoOptions::CrossCheck> kCrossChecks = {
     {"on", StereoOptions::CrossCheck::On}, {"off", StereoOptions::CrossCheck::Off}};
 
 struct Request {
-  std::vector<std::string> scans = {"figure:ring:36", "occluder:front:16", "sphere:upper:24", "torus:full:36",
-                                    "box:full:36"};
+  std::vector<std::string> scans = {"figure:ring:36", "occluder:front:36", "sphere:upper:36", "torus:full:48",
+                                    "box:full:48"};
   std::vector<std::uint64_t> seeds = {1};
   int width = 640, height = 480;
   PhotographOptions photographs;
