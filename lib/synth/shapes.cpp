@@ -93,10 +93,11 @@ Shape torus() {
 }
 
 // Measures of the occluder: a row of posts before a wall that bends round them, on one floor.
-constexpr int kPosts = 9;
-constexpr double kPostRadius = 0.022, kPostPitch = 0.1, kPostY = -0.2, kPostTop = 0.3;
+constexpr int kPosts = 5;
+constexpr double kPostRadius = 0.055, kPostPitch = 0.2, kPostY = -0.2, kPostTop = 0.27;
 constexpr double kBendRadius = 0.7, kBendY = -0.45, kWallThickness = 0.06;
 const Vector3d kFloorCenter{0, 0, -0.33}, kFloorHalf{0.5, 0.3, 0.03};
+constexpr double kFloorTop = -0.3;
 const Vector3d kWallCenter{0, 0.15, 0}, kWallHalf{0.5, 0.15, 0.33};
 
 double postX(int i) { return (i - 0.5 * (kPosts - 1)) * kPostPitch; }
@@ -106,7 +107,8 @@ double occluderDistance(const Vector3d& p) {
   const double wall = std::max(bend, boxDistance(p, kWallCenter, kWallHalf));
   const double nearest = std::clamp(std::round(p.x() / kPostPitch + 0.5 * (kPosts - 1)), 0.0, kPosts - 1.0);
   const double x = postX(static_cast<int>(nearest));
-  const double post = capsuleDistance(p, {x, kPostY, kFloorCenter.z()}, {x, kPostY, kPostTop}, kPostRadius);
+  const Vector3d in_post(x, kPostY, std::clamp(p.z(), kFloorTop, kPostTop));
+  const double post = (p - in_post).norm() - kPostRadius;
   return std::min({wall, post, boxDistance(p, kFloorCenter, kFloorHalf)});
 }
 
@@ -117,7 +119,7 @@ std::vector<SceneRegion> occluderRegions() {
   std::vector<SceneRegion> regions = {{"gap", RegionSide::Outside, behind},
                                       {"wall", RegionSide::Inside, wall}};
   for (int i = 0; i < kPosts; ++i) {
-    const CylinderShape post{{postX(i), kPostY, -0.27}, {postX(i), kPostY, 0.28}, 0.5 * kPostRadius};
+    const CylinderShape post{{postX(i), kPostY, -0.27}, {postX(i), kPostY, kPostTop}, 0.5 * kPostRadius};
     regions.push_back({"post " + std::to_string(i + 1), RegionSide::Inside, post});
   }
   return regions;

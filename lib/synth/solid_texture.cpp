@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace vdbfuse::synth {
@@ -16,7 +15,7 @@ constexpr double kCoarsest = 0.25;  // wavelength of the first octave
 constexpr int kOctaves = 10;
 constexpr double kOctaveContrast = 0.075;
 constexpr double kCellSizes[] = {0.05, 0.014};
-constexpr double kCellContrast[] = {0.08, 0.1};
+constexpr double kCellContrast = 0.09, kPaint = 0.07;
 constexpr double kSpeckSizes[] = {0.022, 0.008, 0.003};
 constexpr double kSpeckContrast = 0.3;
 
@@ -38,13 +37,6 @@ double signedTone(std::uint32_t h) { return 2 * spread(h * 0x9e3779b1U).y() - 1;
 double visibleShare(double wavelength, double blur) {
   const double t = std::clamp((wavelength / blur - 1) / 1.5, 0.0, 1.0);
   return t * t * (3 - 2 * t);
-}
-
-// A turn of each layer of its own, so that no lattice lies along the surfaces of a scene.
-Vector3d inLattice(const Vector3d& point, double size, std::uint32_t layer) {
-  const Eigen::AngleAxisd turn(0.7 + 1.9 * layer, Vector3d(0.36, 0.48, 0.8));
-  const Eigen::AngleAxisd tilt(0.5 + 1.1 * layer, Vector3d(0.8, -0.6, 0));
-  return tilt * (turn * point) / size + Vector3d::Constant(17.31 * layer);
 }
 
 Vector3i floorOf(const Vector3d& p) { return p.array().floor().cast<int>(); }
@@ -91,35 +83,42 @@ double speckAt(const Vector3d& p, std::uint32_t layer) {
 
 }  // namespace
 
+SolidTexture::SolidTexture(std::uint64_t seed) {
+  std::uint32_t number = 0;
+  const auto add = [&](std::vector<Layer>& layers, double size) {
+    const Eigen::AngleAxisd turn(0.7 + 1.9 * ++number, Vector3d(0.36, 0.48, 0.8));
+    const Eigen::AngleAxisd tilt(0.5 + 1.1 * number, Vector3d(0.8, -0.6, 0));
+    const auto key = static_cast<std::uint32_t>(seed ^ seed >> 32) + 101 * number;
+    layers.push_back(
+        {size, (tilt * turn).toRotationMatrix() / size, Vector3d::Constant(17.31 * number), key});
+  };
+  for (int i = 0; i < kOctaves; ++i) add(octaves_, kCoarsest / (1 << i));
+  for (const double size : kCellSizes) add(cells_, size);
+  for (const double size : kSpeckSizes) add(specks_, size);
+}
+
 Vector3d SolidTexture::albedo(const Vector3d& point, double blur) const {
-  std::uint32_t layer = 0;
-  const auto at = [&](double size) { return inLattice(point, size, ++layer); };
-  const auto key = [&] { return seed_ + 101 * layer; };
   double tone = 0;
   Vector3d paint = Vector3d::Zero();
-  double size = kCoarsest;
-  for (int i = 0; i < kOctaves; ++i, size /= 2) {
-    const double share = visibleShare(size, blur);
-    const Vector3d p = at(size);
-    if (share > 0) tone += share * kOctaveContrast * gradientNoise(p, key());
+  for (const Layer& layer : octaves_) {
+    const double share = visibleShare(layer.size, blur);
+    if (share > 0) tone += share * kOctaveContrast * gradientNoise(layer.inLattice(point), layer.key);
   }
-  for (int i = 0; i < 2; ++i) {
-    const double share = visibleShare(kCellSizes[i], blur);
-    const Vector3d p = at(kCellSizes[i]);
+  for (const Layer& layer : cells_) {
+    const double share = visibleShare(layer.size, blur);
     if (share == 0) continue;
-    const std::uint32_t cell = cellAt(p, key());
-    tone += share * kCellContrast[i] * signedTone(cell);
-    paint += share * 0.07 * (2 * spread(cell) - Vector3d::Ones());
+    const std::uint32_t cell = cellAt(layer.inLattice(point), layer.key);
+    tone += share * kCellContrast * signedTone(cell);
+    paint += share * kPaint * (2 * spread(cell) - Vector3d::Ones());
   }
-  for (const double speck : kSpeckSizes) {
-    const double share = visibleShare(0.8 * speck, blur);
-    const Vector3d p = at(speck);
-    if (share > 0) tone += share * kSpeckContrast * speckAt(p, key());
+  for (const Layer& layer : specks_) {
+    const double share = visibleShare(0.8 * layer.size, blur);
+    if (share > 0) tone += share * kSpeckContrast * speckAt(layer.inLattice(point), layer.key);
   }
   constexpr double kMiddle = 0.5, kRange = 0.42;
-  const double gray = kMiddle + tone / std::sqrt(1 + tone * tone / (kRange * kRange));
+  const double grey = kMiddle + tone / std::sqrt(1 + tone * tone / (kRange * kRange));
   const Vector3d stone(1.06, 1.0, 0.9);
-  const Vector3d color = gray * stone.array() * (1 + paint.array());
+  const Vector3d color = grey * stone.array() * (1 + paint.array());
   return color.cwiseMax(0.05).cwiseMin(0.95);
 }
 

@@ -68,8 +68,8 @@ std::vector<double> inverseDepths(const Pixel& pixel, const std::vector<Photogra
   const auto steps = static_cast<std::size_t>(2 * longest) + 1;
   std::vector<double> result(steps + 1);
   for (std::size_t k = 0; k <= steps; ++k)
-    result[k] = 1 / depth.far + (1 / depth.near - 1 / depth.far) * static_cast<double>(k) /
-                                    static_cast<double>(steps);
+    result[k] = 1 / depth.far +
+                (1 / depth.near - 1 / depth.far) * static_cast<double>(k) / static_cast<double>(steps);
   return result;
 }
 
@@ -117,7 +117,8 @@ void vote(const Curve& curve, Curve& votes) {
 
 CurveDepths depthsFromCurves(const Photograph& reference, const std::vector<Photograph>& partners, int x,
                              int y) {
-  const auto window = windowOf([&](int u, int v) { return interpolated(reference.brightness, x + u, y + v); });
+  const auto window =
+      windowOf([&](int u, int v) { return interpolated(reference.brightness, x + u, y + v); });
   if (!window) return {};
   const Pixel pixel{reference, x, y};
   const std::vector<double> inverse_depths = inverseDepths(pixel, partners);

@@ -16,6 +16,7 @@ struct CurveDepths {
 
 /// Depths of pixel (x, y), 0 where there is none: normalised cross-correlation of the 7×7 window, parallel to
 /// the picture, at inverse depths half a pixel apart in the partner in whose picture the point moves most.
-CurveDepths depthsFromCurves(const Photograph& reference, const std::vector<Photograph>& partners, int x, int y);
+CurveDepths depthsFromCurves(const Photograph& reference, const std::vector<Photograph>& partners, int x,
+                             int y);
 
 }  // namespace vdbfuse::benchmark

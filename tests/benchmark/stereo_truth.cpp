@@ -4,9 +4,10 @@
 //   One row a scan, seed and exposure. Of the object's pixels: with texture, seen by at least one and two
 //   partners (given texture). Of those that count: with a depth; of these within a half and a quarter of a
 //   pixel, median and 90 % error in pixels; within half a pixel in the widest partner; the share of all that
-//   count that has a depth within half a pixel. The same for pixels inside a surface only. CPU seconds a view.
+//   count that has a depth within half a pixel. The same for pixels inside a surface only. CPU seconds a
+//   view.
 //   --gain and --bias: a second row with exposures that differ by view.
-//   --curves N: also every N-th counted pixel by hand: mean of the correlation curves against votes.
+//   --curves N: also every N-th pixel inside a surface by hand: mean of the correlation curves against votes.
 //   --depths FOLDER: scores a depth set instead of computing one; one scan, views in its order.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -25,16 +26,19 @@ namespace {
 using namespace vdbfuse;
 using namespace vdbfuse::benchmark;
 
-const std::map<std::string, Arc> kArcs = {
-    {"full", Arc::Full}, {"ring", Arc::Ring}, {"upper", Arc::Upper}, {"front", Arc::Front}, {"room", Arc::Room}};
+const std::map<std::string, Arc> kArcs = {{"full", Arc::Full},
+                                          {"ring", Arc::Ring},
+                                          {"upper", Arc::Upper},
+                                          {"front", Arc::Front},
+                                          {"room", Arc::Room}};
 const std::map<std::string, StereoOptions::Mode> kModes = {{"fast", StereoOptions::Mode::Fast},
                                                            {"paper", StereoOptions::Mode::Paper}};
 const std::map<std::string, StereoOptions::CrossCheck> kCrossChecks = {
     {"on", StereoOptions::CrossCheck::On}, {"off", StereoOptions::CrossCheck::Off}};
 
 struct Request {
-  std::vector<std::string> scans = {"figure:ring:36", "occluder:front:16", "sphere:upper:24", "torus:full:36",
-                                    "box:full:36"};
+  std::vector<std::string> scans = {"figure:ring:36", "occluder:front:36", "sphere:upper:36", "torus:full:48",
+                                    "box:full:48"};
   std::vector<std::uint64_t> seeds = {1};
   int width = 640, height = 480;
   PhotographOptions photographs;
@@ -55,8 +59,7 @@ std::vector<std::vector<std::size_t>> defaultPartners(const PhotographSequence& 
   std::vector<PhotographHeader> headers;
   std::vector<DepthInterval> depths;
   for (std::size_t i = 0; i < photographs.size(); ++i) headers.push_back(photographs.header(i));
-  for (std::size_t i = 0; i < photographs.size(); ++i)
-    depths.push_back(depthsOf(headers, i, options.domain));
+  for (std::size_t i = 0; i < photographs.size(); ++i) depths.push_back(depthsOf(headers, i, options.domain));
   return choosePartners(headers, depths, options.partners);
 }
 
@@ -107,8 +110,10 @@ double quantile(std::vector<PixelError> errors, double q) {
 void printHead() {
   std::printf(
       "| scan | counted px/view | textured, >= 1, >= 2 partners %% | with a depth %% | <= 1/2, 1/4 px %% | "
-      "median, 90 %% px | <= 1/2 px in the widest %% | right of all counted %% | inside: with a depth, <= 1/2 "
-      "px, right of all %% | invented px/view | CPU s/view |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "median, 90 %% px | <= 1/2 px in the widest %% | right of all counted %% | inside: with a depth, <= "
+      "1/2 "
+      "px, right of all %% | invented px/view | CPU s/view "
+      "|\n|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
 void printRow(const std::string& name, const StereoScore& s, std::size_t views, double cpu_seconds) {
@@ -118,58 +123,62 @@ void printRow(const std::string& name, const StereoScore& s, std::size_t views, 
   const std::size_t textured = s.object() - s.of(Kind::Plain), seen = textured - s.of(Kind::Unseen);
   const std::size_t half = within(all, &PixelError::median, 0.5);
   const std::size_t half_inside = within(s.inside, &PixelError::median, 0.5);
-  std::printf("| %s | %zu | %.1f %.1f %.1f | %.2f | %.2f %.2f | %.3f %.3f | %.2f | %.2f | %.2f %.2f %.2f | %zu "
-              "| %.2f |\n",
-              name.c_str(), s.counted() / views, percent(textured, s.object()), percent(seen, textured),
-              percent(s.counted(), textured), percent(all.size(), s.counted()), percent(half, all.size()),
-              percent(within(all, &PixelError::median, 0.25), all.size()), quantile(all, 0.5),
-              quantile(all, 0.9), percent(within(all, &PixelError::widest, 0.5), all.size()),
-              percent(half, s.counted()), percent(s.inside.size(), s.of(Kind::Inside)),
-              percent(half_inside, s.inside.size()), percent(half_inside, s.of(Kind::Inside)),
-              s.invented / views, cpu_seconds / static_cast<double>(views));
+  std::printf(
+      "| %s | %zu | %.1f %.1f %.1f | %.2f | %.2f %.2f | %.3f %.3f | %.2f | %.2f | %.2f %.2f %.2f | %zu "
+      "| %.2f |\n",
+      name.c_str(), s.counted() / views, percent(textured, s.object()), percent(seen, textured),
+      percent(s.counted(), textured), percent(all.size(), s.counted()), percent(half, all.size()),
+      percent(within(all, &PixelError::median, 0.25), all.size()), quantile(all, 0.5), quantile(all, 0.9),
+      percent(within(all, &PixelError::widest, 0.5), all.size()), percent(half, s.counted()),
+      percent(s.inside.size(), s.of(Kind::Inside)), percent(half_inside, s.inside.size()),
+      percent(half_inside, s.of(Kind::Inside)), s.invented / views, cpu_seconds / static_cast<double>(views));
   std::fflush(stdout);
 }
 
-// Sampled pixels, apart where at least half of the partners see the point and where fewer do.
-struct CurveCounts {
-  std::size_t pixels[2] = {}, mean[2] = {}, voted[2] = {};
+// Sampled pixels inside a surface, by the number of partners that see the point.
+struct CurveCount {
+  std::size_t pixels = 0, mean = 0, voted = 0;
 };
+using CurveCounts = std::map<int, CurveCount>;
 
-void countCurves(CurveCounts& sum, const StereoScan& scan, std::size_t index,
-                 const std::vector<std::size_t>& partners, std::size_t every) {
+CurveCounts countCurves(const StereoScan& scan, std::size_t index, const std::vector<std::size_t>& partners,
+                        std::size_t every) {
   constexpr double kRight = 1;  // the window is not slanted: this asks for the maximum, not its place
   const CountedPixels counted = countedPixels(scan, index, partners);
   const Photograph reference = scan.photographs.load(index);
   std::vector<Photograph> others;
   for (const std::size_t p : partners) others.push_back(scan.photographs.load(p));
+  CurveCounts sum;
   std::size_t number = 0;
   for (int y = 0; y < counted.kind.height(); ++y)
     for (int x = 0; x < counted.kind.width(); ++x) {
-      if (!counted.counts(x, y) || number++ % every != 0) continue;
+      if (counted.kind(x, y) != CountedPixels::Kind::Inside || number++ % every != 0) continue;
       const CurveDepths depths = depthsFromCurves(reference, others, x, y);
       const auto right = [&](double d) {
         return d > 0 && pixelError(scan, index, partners, x, y, d).median <= kRight ? 1 : 0;
       };
-      const std::size_t hidden = 2 * counted.seen_by(x, y) < static_cast<int>(partners.size()) ? 1 : 0;
-      ++sum.pixels[hidden], sum.mean[hidden] += right(depths.mean), sum.voted[hidden] += right(depths.voted);
+      CurveCount& count = sum[counted.seen_by(x, y)];
+      ++count.pixels, count.mean += right(depths.mean), count.voted += right(depths.voted);
     }
+  return sum;
 }
 
 void printCurves(const StereoScan& scan, const std::vector<std::vector<std::size_t>>& partners,
                  std::size_t every) {
-  CurveCounts sum;
   std::vector<CurveCounts> each(scan.views.size());
   parallelFor(each.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) countCurves(each[i], scan, i, partners[i], every);
+    for (std::size_t i = begin; i < end; ++i) each[i] = countCurves(scan, i, partners[i], every);
   });
-  for (const CurveCounts& c : each)
-    for (int k = 0; k < 2; ++k)
-      sum.pixels[k] += c.pixels[k], sum.mean[k] += c.mean[k], sum.voted[k] += c.voted[k];
-  for (int k = 0; k < 2; ++k)
-    std::printf("  %s half of the partners see the point: %zu pixels, within a pixel: mean of the curves %.1f %%, "
-                "votes %.1f %%\n",
-                k == 0 ? "at least" : "fewer than", sum.pixels[k], percent(sum.mean[k], sum.pixels[k]),
-                percent(sum.voted[k], sum.pixels[k]));
+  CurveCounts sum;
+  for (const CurveCounts& counts : each)
+    for (const auto& [seen_by, c] : counts) {
+      CurveCount& s = sum[seen_by];
+      s.pixels += c.pixels, s.mean += c.mean, s.voted += c.voted;
+    }
+  for (const auto& [seen_by, c] : sum)
+    std::printf(
+        "  seen by %d partners: %zu pixels, within a pixel: mean of the curves %.1f %%, votes %.1f %%\n",
+        seen_by, c.pixels, percent(c.mean, c.pixels), percent(c.voted, c.pixels));
 }
 
 void measure(const Request& request, const SyntheticScan& synthetic, const std::string& name) {
@@ -203,14 +212,16 @@ void run(const Request& request) {
   PhotographOptions plain = request.photographs;
   plain.gain = 1, plain.bias = 0;
   std::vector<PhotographOptions> exposures = {plain};
-  if (request.photographs.gain != 1 || request.photographs.bias != 0) exposures.push_back(request.photographs);
+  if (request.photographs.gain != 1 || request.photographs.bias != 0)
+    exposures.push_back(request.photographs);
   for (const std::string& text : request.scans)
     for (const std::uint64_t seed : request.seeds)
       for (const PhotographOptions& exposure : exposures) {
         auto [scene, options] = parseScan(request, text);
         options.seed = seed, options.photographs = exposure;
         char name[96];
-        std::snprintf(name, sizeof name, "%s, seed %llu%s", text.c_str(), static_cast<unsigned long long>(seed),
+        std::snprintf(name, sizeof name, "%s, seed %llu%s", text.c_str(),
+                      static_cast<unsigned long long>(seed),
                       &exposure == &exposures.front() ? "" : ", exposed");
         measure(request, SyntheticScan(makeScene(scene), options), name);
       }

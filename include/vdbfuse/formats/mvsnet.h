@@ -28,8 +28,8 @@ class MvsnetWriter {
   /// IoError when a file cannot be written.
   void add(const View& view);
 
-  /// Writes a photograph as number size(): its camera and its picture in 8 bits, neither depth map nor mask. The line of depths holds what the photograph says, zeros when it says nothing. Throws as
-  /// above.
+  /// Writes a photograph as number size(): its camera and its picture in 8 bits, neither depth map nor mask.
+  /// The line of depths holds what the photograph says, zeros when it says nothing. Throws as above.
   void add(const Photograph& photograph);
 
   /// Number of views written so far.
