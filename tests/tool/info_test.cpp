@@ -8,6 +8,7 @@
 #include "io/temporary_folder.h"
 #include "tool/run_tool.h"
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/image_set.h"
 #include "vdbfuse/formats/mvsnet.h"
 
 namespace vdbfuse {
@@ -76,6 +77,40 @@ TEST(Info, JsonHoldsTheSame) {
   EXPECT_EQ(nlohmann::json::parse(readText(file))["depth"]["median"], 2.0);
 }
 
+// Two photographs, of one of which the depths are known.
+void writePhotographs(const std::filesystem::path& folder) {
+  std::vector<Photograph> photographs(2);
+  for (int i = 0; i < 2; ++i) {
+    Photograph& photograph = photographs[static_cast<std::size_t>(i)];
+    photograph.name = std::to_string(i);
+    photograph.camera = {8, 6, 8, 8, 3.5, 2.5, {}};
+    photograph.world_from_camera.translation() = Eigen::Vector3d(i, 0, 0);
+    photograph.brightness = Image<float>(8, 6, 0.5F);
+  }
+  photographs[1].depth = DepthInterval{1, 3};
+  writeImageSet(folder, "mvsnet", PhotographSequence::fromPhotographs(std::move(photographs)));
+}
+
+TEST(Info, TellsWhatPhotographsAreThere) {
+  const TemporaryFolder folder;
+  writePhotographs(folder / "images");
+  const ToolResult run =
+      runTool("info " + quoted(folder / "images") + " --json " + quoted(folder / "info.json"));
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(run.err, "");
+  EXPECT_EQ(run.out,
+            "format      mvsnet\n"
+            "photographs 2, 8x6 pixels\n"
+            "poses       4x4 camera_from_world ('extrinsic'), x right, y down, z forward\n"
+            "depths      1 to 3, stated of 1 photographs\n"
+            "cameras     0,0,0 to 1,0,0\n");
+  const nlohmann::json json = nlohmann::json::parse(readText(folder / "info.json"));
+  EXPECT_EQ(json["input"],
+            nlohmann::json({{"photographs", 2}, {"width", 8}, {"height", 6}, {"format", "mvsnet"}}));
+  EXPECT_EQ(json["photographs"][0]["near"], nullptr);
+  EXPECT_EQ(json["photographs"][1]["far"], 3.0);
+}
+
 TEST(Info, BadInputIsOneLineAndLeavesNothingBehind) {
   const TemporaryFolder folder;
   writeScan(folder / "scan");
@@ -105,6 +140,20 @@ TEST(Formats, AreAllListedWithTheirLayout) {
     EXPECT_THAT(run.out, HasSubstr(std::string(format.name) + ": " + std::string(format.description)));
     EXPECT_THAT(run.out, HasSubstr("    " + first_line + "\n"));
   }
+  const std::string photographs = run.out.substr(run.out.find("\nPhotographs with cameras"));
+  for (const ImageSetFormat& format : imageSetFormats())
+    EXPECT_THAT(photographs,
+                HasSubstr("\n" + std::string(format.name) + ": " + std::string(format.description)));
+}
+
+TEST(Formats, AreComparedWithAFolderOfPhotographs) {
+  const TemporaryFolder folder;
+  writePhotographs(folder / "images");
+  const ToolResult run = runTool("formats " + quoted(folder / "images"));
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.out, HasSubstr("Depth maps\nrgbd "));
+  EXPECT_THAT(run.out, HasSubstr("mvsnet       no      cams/*_cam.txt, but no depth_est/*.pfm\n"));
+  EXPECT_THAT(run.out, HasSubstr("mvsnet       yes     2 cameras and images/\n"));
 }
 
 }  // namespace

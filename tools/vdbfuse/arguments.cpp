@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "vdbfuse/base/errors.h"
+
 namespace vdbfuse::tool {
 
 std::pair<int, int> parseSize(const std::string& text) {
@@ -19,6 +21,13 @@ Eigen::Vector3d axisNamed(const std::string& name) {
 }
 
 CLI::Validator axisCheck() { return CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}); }
+
+std::optional<Box> boxOf(const std::vector<double>& b) {
+  if (b.empty()) return std::nullopt;
+  const Box box(Eigen::Vector3d(b[0], b[1], b[2]), Eigen::Vector3d(b[3], b[4], b[5]));
+  if (box.isEmpty()) throw InvalidArgument("--bbox", "the lower corner must come first");
+  return box;
+}
 
 void refuse(const std::string& argument, const std::vector<std::string>& problems) {
   std::string all;

@@ -18,6 +18,7 @@ void addInfo(CLI::App& app, Action& action);
 void addFuse(CLI::App& app, Action& action);
 void addJudge(CLI::App& app, Action& action);
 void addRender(CLI::App& app, Action& action);
+void addStereo(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addEvaluate(CLI::App& app, Action& action);
 

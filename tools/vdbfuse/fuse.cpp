@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// vdbfuse fuse INPUT OUT: depth maps to a surface.
+// vdbfuse fuse INPUT OUT: depth maps, or photographs, to a surface.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <utility>
 
+#include "arguments.h"
 #include "choice.h"
 #include "commands.h"
+#include "fuse_photographs.h"
 #include "fuse_report.h"
 #include "json_file.h"
 #include "memory_option.h"
@@ -38,6 +42,7 @@ const std::map<std::string, CompletionOptions::Kind> kCompletions = {
 struct Request {
   fs::path input, output, judgement, grids, json, volume;
   SensorArguments sensor;
+  PhotographArguments photographs;
   ReconstructOptions reconstruct;
   std::string border = "auto", thickness = "auto", color = "auto", truncation = "auto";
   std::vector<std::string> weights;
@@ -222,22 +227,48 @@ ConventionOptions quickCheck() {
   return options;
 }
 
+Words wordsOf(const Request& request) { return request.quiet ? Words::Keep : Words::Print; }
+
+// What is fused. Depth maps are read without their pictures, which colour the mesh at the end.
+struct Input {
+  DepthSet set;
+  std::optional<StereoSummary> stereo;  ///< of photographs
+};
+
+Input readInput(Request& request, const Progress& progress) {
+  if (!takesPhotographs(request.input, request.sensor, request.photographs)) {
+    Input input{readScan(request.input, request.sensor, wordsOf(request)), std::nullopt};
+    if (!request.quiet) warnOf(checkConvention(input.set.views, input.set.stored_from_camera, quickCheck()));
+    return input;
+  }
+  MatchedScan scan = matchPhotographs(request.input, request.sensor, request.photographs, request.reconstruct,
+                                      wordsOf(request), progress);
+  return {std::move(scan.set), std::move(scan.stereo)};
+}
+
+ViewSequence picturesOf(const Request& request, const Input& input) {
+  if (input.stereo) return input.set.views;
+  return readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load).views;
+}
+
 void fuse(Request request) {
   const ThreadLimit threads(request.threads);
   requireMeshFormat(request.output);
   for (const fs::path& path : {request.output, request.grids, request.json}) requireNew(path, request);
   resolve(request);
-  const DepthSet set = readScan(request.input, request.sensor, request.quiet ? Words::Keep : Words::Print);
-  if (!request.quiet) warnOf(checkConvention(set.views, set.stored_from_camera, quickCheck()));
   const ProgressLine line(request.quiet);
+  const Input input = readInput(request, line.progress());
   Reconstruction result =
-      reconstruct(judged(set, request, line.progress()), request.reconstruct, line.progress());
+      reconstruct(judged(input.set, request, line.progress()), request.reconstruct, line.progress());
   if (request.color == "auto") {
-    const DepthSet pictures = readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load);
-    if (hasPictures(pictures.views)) colorReconstruction(pictures.views, result, line.progress());
+    const ViewSequence pictures = picturesOf(request, input);
+    if (hasPictures(pictures)) colorReconstruction(pictures, result, line.progress());
   }
-  const FuseContext context{request.input,    request.judgement,   set.format,
-                            set.views.size(), request.reconstruct, topology(result.mesh)};
+  if (input.stereo)
+    result.steps.insert(result.steps.begin(), input.stereo->steps.begin(), input.stereo->steps.end());
+  const FuseContext context{
+      request.input,       request.judgement,     input.set.format, input.set.views.size(),
+      request.reconstruct, topology(result.mesh), input.stereo};
   writeOutputs(request, result, context);
   if (!request.quiet) printFuseReport(result, context, request.output);
 }
@@ -245,8 +276,10 @@ void fuse(Request request) {
 }  // namespace
 
 void addFuse(CLI::App& app, Action& action) {
-  CLI::App& sub = *app.add_subcommand("fuse", "Turn depth maps with poses into a surface");
-  sub.footer("Example: vdbfuse fuse scans/ mesh.ply --voxel 0.002");
+  CLI::App& sub =
+      *app.add_subcommand("fuse", "Turn depth maps with poses, or photographs with cameras, into a surface");
+  sub.footer(
+      "Example: vdbfuse fuse scans/ mesh.ply --voxel 0.002\n         vdbfuse fuse photographs/ mesh.ply");
   auto request = std::make_shared<Request>();
   sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
   sub.add_option("OUT", request->output, "Mesh to write: .ply, .obj, .stl or .glb")->required();
@@ -258,8 +291,12 @@ void addFuse(CLI::App& app, Action& action) {
   for (CLI::Option* option : judged_before) judgement->excludes(option);
   addEnergyOptions(sub, *request);
   addTsdfOptions(sub, *request);
+  addPhotographOptions(sub, request->photographs);
   addOutputOptions(sub, *request);
-  sub.callback([&action, request] { action = [request] { fuse(*request); }; });
+  sub.callback([&action, request] {
+    refuse("options", validate(request->photographs.stereo));
+    action = [request] { fuse(*request); };
+  });
 }
 
 }  // namespace vdbfuse::tool

@@ -136,6 +136,7 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
                 {"width", result.width},
                 {"height", result.height},
                 {"format", context.format}};
+  if (context.stereo) j["stereo"] = {{"views", jsonOf(*context.stereo)}};
   j["calibration"] = calibrationJson(result.calibration);
   j["grid"] = {{"voxel", result.grid.voxel},
                {"active", result.grid.active},

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "stereo_report.h"
 #include "vdbfuse/mesh/topology.h"
 #include "vdbfuse/pipeline/plan.h"
 
@@ -16,6 +18,7 @@ struct FuseContext {
   std::size_t views = 0;
   ReconstructOptions options;
   TopologyReport topology;
+  std::optional<StereoSummary> stereo;  ///< of photographs
 };
 
 /// One JSON object: version, command, options (resolved), input, calibration, grid, energy, cut, mesh, steps,

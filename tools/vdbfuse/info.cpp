@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// vdbfuse info: what is in a data set.
+// vdbfuse info: what is in a data set, of depth maps or of photographs.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -32,16 +34,20 @@ std::string number(double value) {
   return text;
 }
 
-std::string sizesOf(const ViewSequence& views) {
-  std::set<std::pair<int, int>> sizes;
-  for (std::size_t i = 0; i < views.size(); ++i)
-    sizes.emplace(imageWidth(views.header(i).projection), imageHeight(views.header(i).projection));
+std::string sizesOf(const std::set<std::pair<int, int>>& sizes) {
   const auto text = [](const std::pair<int, int>& size) {
     return std::to_string(size.first) + "x" + std::to_string(size.second);
   };
   if (sizes.size() == 1) return text(*sizes.begin());
   return text(*sizes.begin()) + " to " + text(*sizes.rbegin()) + ", " + std::to_string(sizes.size()) +
          " sizes";
+}
+
+std::string sizesOf(const ViewSequence& views) {
+  std::set<std::pair<int, int>> sizes;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    sizes.emplace(imageWidth(views.header(i).projection), imageHeight(views.header(i).projection));
+  return sizesOf(sizes);
 }
 
 std::string text(const std::optional<Spread>& spread) {
@@ -138,8 +144,72 @@ Json jsonOf(const InfoOptions& options, const DepthSet& set, const ViewsSummary&
   return json;
 }
 
+// What is known of photographs without looking at them.
+struct PhotographsSummary {
+  std::set<std::pair<int, int>> sizes;
+  Box cameras;
+  std::size_t with_depths = 0;
+  DepthInterval depths{std::numeric_limits<double>::infinity(), 0};
+
+  explicit PhotographsSummary(const PhotographSequence& photographs) {
+    for (std::size_t i = 0; i < photographs.size(); ++i) {
+      const PhotographHeader& header = photographs.header(i);
+      sizes.emplace(header.camera.width, header.camera.height);
+      cameras.extend(header.world_from_camera.translation());
+      if (!header.depth) continue;
+      ++with_depths;
+      depths.near = std::min(depths.near, header.depth->near);
+      depths.far = std::max(depths.far, header.depth->far);
+    }
+  }
+};
+
+void print(const ImageSet& set, const PhotographsSummary& summary) {
+  std::printf("format      %s\n", set.format.c_str());
+  std::printf("photographs %zu, %s pixels\n", set.photographs.size(), sizesOf(summary.sizes).c_str());
+  std::printf("poses       %s\n", set.pose.c_str());
+  if (summary.with_depths == 0) std::printf("depths      not stated\n");
+  if (summary.with_depths > 0)
+    std::printf("depths      %s to %s, stated of %zu photographs\n", number(summary.depths.near).c_str(),
+                number(summary.depths.far).c_str(), summary.with_depths);
+  std::printf("cameras     %s\n", text(summary.cameras).c_str());
+  for (const std::string& note : set.notes) std::printf("note        %s\n", note.c_str());
+}
+
+Json jsonOf(const InfoOptions& options, const ImageSet& set, const PhotographsSummary& summary) {
+  Json json = tool::jsonOf("info");
+  json["options"] = jsonOf(options);
+  const Pinhole& first = set.photographs.header(0).camera;
+  json["input"] = {{"photographs", set.photographs.size()},
+                   {"width", first.width},
+                   {"height", first.height},
+                   {"format", set.format}};
+  json["pose"] = set.pose;
+  json["photographs"] = Json::array();
+  for (std::size_t i = 0; i < set.photographs.size(); ++i) {
+    const PhotographHeader& header = set.photographs.header(i);
+    Json one = {{"name", header.name}, {"near", nullptr}, {"far", nullptr}};
+    if (header.depth) one["near"] = header.depth->near, one["far"] = header.depth->far;
+    json["photographs"].push_back(std::move(one));
+  }
+  json["cameras"] = jsonOf(summary.cameras);
+  json["notes"] = set.notes;
+  return json;
+}
+
+void runOnPhotographs(const InfoOptions& options) {
+  const ImageSet set = readImageSet(options.input, {options.read.format, options.read.masks});
+  const PhotographsSummary summary(set.photographs);
+  if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary));
+  print(set, summary);
+}
+
 void run(const InfoOptions& options) {
   if (!options.json.empty() && !options.overwrite) refuseExisting(options.json);
+  if (kindOf(options.input, options.read.format) == InputKind::Photographs) {
+    runOnPhotographs(options);
+    return;
+  }
   const DepthSet set = readInput(options.input, options.read);
   const ViewsSummary summary = summarise(set.views);
   if (summary.valid_pixels == 0)
@@ -155,7 +225,8 @@ void run(const InfoOptions& options) {
 void addInfo(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "info",
-      "What is in a data set of depth maps.\n\nExample: vdbfuse info scan/\n\n"
+      "What is in a data set of depth maps, or of photographs with cameras.\n\nExample: vdbfuse info "
+      "scan/\n\n"
       "Ranges and boxes leave out the 0.2 % at each end, so that a few wild depths do not count.\n"
       "A few views are compared with each other; where another reading of poses or depths would agree much\n"
       "better, a warning names it.");

@@ -35,13 +35,14 @@ int main(int argc, char** argv) {
   // Images go back to the system when they are freed. By default the C library would keep their memory for
   // smaller things, a fifth of the peak.
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  CLI::App app("Depth maps to watertight surfaces by probabilistic visibility.", "vdbfuse");
+  CLI::App app("Depth maps, or photographs, to watertight surfaces by probabilistic visibility.", "vdbfuse");
   app.set_version_flag("--version", "vdbfuse " VDBFUSE_VERSION);
   app.require_subcommand(1);
   vdbfuse::tool::Action action;
   vdbfuse::tool::addFormats(app, action);
   vdbfuse::tool::addInfo(app, action);
   vdbfuse::tool::addConvert(app, action);
+  vdbfuse::tool::addStereo(app, action);
   vdbfuse::tool::addJudge(app, action);
   vdbfuse::tool::addFuse(app, action);
   vdbfuse::tool::addRender(app, action);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "read_options.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -28,7 +29,21 @@ std::vector<std::string> kindNames() {
 std::vector<std::string> formatNames() {
   std::vector<std::string> names;
   for (const DepthSetFormat& format : depthSetFormats()) names.emplace_back(format.name);
+  for (const ImageSetFormat& format : imageSetFormats()) {
+    if (std::find(names.begin(), names.end(), format.name) == names.end()) names.emplace_back(format.name);
+  }
   return names;
+}
+
+// Whether one of the formats, the one of that name where one is given, fits in full.
+bool fitsFully(const auto& formats, const std::filesystem::path& path, const std::string& name) {
+  return std::any_of(formats.begin(), formats.end(), [&](const auto& format) {
+    return (name.empty() || name == format.name) && format.detect(path).fit == Detection::Fit::Fully;
+  });
+}
+
+bool isNamed(const auto& formats, const std::string& name) {
+  return std::any_of(formats.begin(), formats.end(), [&](const auto& format) { return format.name == name; });
 }
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
@@ -56,6 +71,14 @@ std::optional<Convention> wanted(const DepthSet& set, const std::string& name, s
 }
 
 }  // namespace
+
+InputKind kindOf(const std::filesystem::path& path, const std::string& format) {
+  const bool only_photographs = isNamed(imageSetFormats(), format) && !isNamed(depthSetFormats(), format);
+  if (only_photographs) return InputKind::Photographs;
+  if (!std::filesystem::exists(path) || fitsFully(depthSetFormats(), path, format))
+    return InputKind::DepthMaps;
+  return fitsFully(imageSetFormats(), path, format) ? InputKind::Photographs : InputKind::DepthMaps;
+}
 
 DepthSet readInput(const std::filesystem::path& path, const ReadArguments& arguments) {
   DepthSet set = readDepthSet(path, arguments);

@@ -7,6 +7,7 @@
 
 #include "json_file.h"
 #include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/formats/image_set.h"
 #include "vdbfuse/fusion/conventions.h"
 
 namespace vdbfuse::tool {
@@ -21,6 +22,12 @@ struct ReadArguments : ReadOptions {
 /// --intrinsics, --splat-step, --masks, --min-depth, --max-depth, --fix-convention. `arguments` must outlive
 /// the parsing.
 void addReadOptions(CLI::App& command, ReadArguments& arguments);
+
+enum class InputKind { DepthMaps, Photographs };
+
+/// What lies at `path`, of the format of that name where one is given: photographs when it is no complete set
+/// of depth maps, but one of photographs. Where it is neither, depth maps: their reader says what is missing.
+InputKind kindOf(const std::filesystem::path& path, const std::string& format);
 
 /// A data set under the convention that was asked for, or found; a note says which.
 DepthSet readInput(const std::filesystem::path& path, const ReadArguments& arguments);

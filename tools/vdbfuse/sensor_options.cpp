@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "arguments.h"
 #include "choice.h"
 #include "vdbfuse/base/errors.h"
 
@@ -76,10 +77,7 @@ void resolve(const SensorArguments& arguments, ReconstructOptions& options) {
   if (arguments.no_denial) options.judge.denial = JudgeOptions::Denial::Skip;
   options.noise_shape = noiseShape(arguments.noise);
   if (!arguments.sensor.empty()) options.noise = sensorPreset(arguments.sensor).noise;
-  const std::vector<double>& b = arguments.box;
-  if (b.empty()) return;
-  options.domain = Box(Eigen::Vector3d(b[0], b[1], b[2]), Eigen::Vector3d(b[3], b[4], b[5]));
-  if (options.domain->isEmpty()) throw InvalidArgument("--bbox", "the lower corner must come first");
+  options.domain = boxOf(arguments.box);
 }
 
 DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words,

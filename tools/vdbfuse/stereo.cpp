@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// vdbfuse stereo IMAGES OUTDIR: photographs to depth maps.
+#include "vdbfuse/stereo/stereo.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "arguments.h"
+#include "commands.h"
+#include "json_file.h"
+#include "output_folder.h"
+#include "progress_line.h"
+#include "stereo_arguments.h"
+#include "stereo_preview.h"
+#include "stereo_report.h"
+#include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/memory.h"
+#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/formats/depth_set.h"
+#include "vdbfuse/io/png.h"
+
+namespace vdbfuse::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Request {
+  fs::path input, output, json;
+  ImageReadOptions read;
+  StereoOptions options;
+  std::vector<double> box;
+  std::string to = "mvsnet";
+  std::size_t views = 0;
+  int threads = 0;
+  bool overwrite = false, quiet = false;
+};
+
+// Names that can be names of files: folders become parts of them; numbers where two would be the same.
+void makeFileNames(std::vector<StereoView>& views) {
+  std::set<std::string> names;
+  for (StereoView& view : views) {
+    std::replace(view.view.name.begin(), view.view.name.end(), '/', '_');
+    names.insert(view.view.name);
+  }
+  for (std::size_t i = 0; i < views.size() && names.size() < views.size(); ++i)
+    views[i].view.name = std::to_string(i);
+}
+
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder, "cannot be created: " + error.message());
+}
+
+void writePreviews(const fs::path& folder, const std::vector<StereoView>& views) {
+  makeFolder(folder);
+  parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      writePng(folder / (views[i].view.name + ".png"), stereoPreview(views[i].view));
+  });
+}
+
+// Where readers of the folder look for them. MVSNet's views are numbered, COLMAP's have their names.
+void writeMasks(const fs::path& folder, const ViewSequence& written, const std::vector<StereoView>& views,
+                const std::string& format) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Image<std::uint8_t>& mask = views[i].view.map.mask;
+    if (mask.empty()) continue;
+    makeFolder(folder / "masks");
+    const std::string& name = format == "mvsnet" ? written.header(i).name : views[i].view.name;
+    writePng(folder / "masks" / (name + ".png"), mask);
+  }
+}
+
+Json jsonOf(const Request& request, const ImageSet& set, const StereoSummary& summary) {
+  Json json = tool::jsonOf("stereo");
+  json["options"] = tool::jsonOf(request.options);
+  json["options"]["input"] = request.input.string();
+  json["options"]["masks"] = request.read.masks.empty() ? Json(nullptr) : Json(request.read.masks.string());
+  json["options"]["to"] = request.to;
+  const Pinhole& first = set.photographs.header(0).camera;
+  json["input"] = {{"photographs", set.photographs.size()},
+                   {"width", first.width},
+                   {"height", first.height},
+                   {"format", set.format}};
+  json["views"] = tool::jsonOf(summary);
+  json["notes"] = set.notes;
+  return json;
+}
+
+// What differs from run to run is not in the folder.
+Json withTimes(Json json, const StereoSummary& summary) {
+  json["steps"] = Json::array();
+  for (const StepTime& s : summary.steps)
+    json["steps"].push_back({{"name", s.name}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  return json;
+}
+
+void writeFolder(const fs::path& folder, const Request& request, const StereoResult& result,
+                 const Progress& progress) {
+  std::vector<View> views;
+  for (const StereoView& view : result.views) views.push_back(view.view);
+  writeDepthSet(folder, request.to, ViewSequence::fromViews(std::move(views)), {}, progress);
+  ReadOptions read_back;
+  read_back.format = request.to;
+  writeMasks(folder, readDepthSet(folder, read_back).views, result.views, request.to);
+  writePreviews(folder / "preview", result.views);
+}
+
+void printNotes(const Request& request, const ImageSet& set) {
+  for (const std::string& note : set.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  if (request.options.hypotheses > 1)
+    std::fprintf(stderr, "note: %s has no place for further depths of a pixel; vdbfuse fuse %s uses them\n",
+                 request.to.c_str(), request.input.c_str());
+}
+
+void run(Request request) {
+  const ThreadLimit threads(request.threads);
+  refuseToReplace(request.output, request.input);
+  if (!request.json.empty() && !request.overwrite) refuseExisting(request.json);
+  OutputFolder folder(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
+  request.options.domain = boxOf(request.box);
+  const ImageSet set = readPhotographs(request.input, request.read, request.views);
+  if (!request.quiet) printNotes(request, set);
+  const ProgressLine line(request.quiet);
+  StereoResult result = computeDepthMaps(set.photographs, request.options, line.progress());
+  const StereoSummary summary = summarise(result);
+  makeFileNames(result.views);
+  writeFolder(folder.temporaryPath(), request, result, line.progress());
+  const Json json = jsonOf(request, set, summary);
+  writeJson(folder.temporaryPath() / "stereo.json", json);
+  if (!request.json.empty()) writeJson(request.json, withTimes(json, summary));
+  folder.commit();
+  if (!request.quiet) std::printf("%s", tableOf(summary).c_str());
+}
+
+std::vector<std::string> imageFormatNames() {
+  std::vector<std::string> names;
+  for (const ImageSetFormat& format : imageSetFormats()) names.emplace_back(format.name);
+  return names;
+}
+
+void addInputOptions(CLI::App& app, Request& request) {
+  const char* group = "Input";
+  app.add_option("--format", request.read.format, "Format of the input, if looking at it is not enough")
+      ->check(CLI::IsMember(imageFormatNames()))
+      ->group(group);
+  app.add_option("--masks", request.read.masks,
+                 "Folder of silhouettes NAME.png, black where the object is not; default: what lies in the "
+                 "data set")
+      ->group(group);
+  app.add_option("--views", request.views, "Use the first N photographs only")
+      ->check(CLI::Range(2, 1 << 30))
+      ->group(group);
+  app.add_option("--bbox", request.box,
+                 "Box x0,y0,z0,x1,y1,z1 in which depths are looked for; default: what the data set says, or "
+                 "where the cameras look")
+      ->delimiter(',')
+      ->expected(6)
+      ->group(group);
+  app.add_option("--min-depth", request.options.min_depth, "Least depth that is looked for")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+  app.add_option("--max-depth", request.options.max_depth, "Largest depth that is looked for")
+      ->check(CLI::NonNegativeNumber)
+      ->group(group);
+}
+
+}  // namespace
+
+void addStereo(CLI::App& app, Action& action) {
+  CLI::App& sub = *app.add_subcommand("stereo", "Make depth maps with confidences from photographs");
+  sub.footer(
+      "Writes depth maps, confidences, cameras and pictures in the layout of MVSNet or COLMAP, a preview a\n"
+      "photograph (picture, depths, confidences), and stereo.json. vdbfuse fuse takes the photographs, "
+      "too.\n\n"
+      "Example: vdbfuse stereo photographs/ depths/ && vdbfuse fuse depths/ mesh.ply");
+  auto request = std::make_shared<Request>();
+  sub.add_option("IMAGES", request->input, "Photographs with cameras: a folder or a file")->required();
+  sub.add_option("OUTDIR", request->output, "Folder to write")->required();
+  addInputOptions(sub, *request);
+  addStereoOptions(sub, request->options, "Matching");
+  sub.add_option("--to", request->to, "Layout of the folder")
+      ->check(CLI::IsMember({"mvsnet", "colmap"}))
+      ->capture_default_str();
+  sub.add_option("--json", request->json, "Write stereo.json, with times and memory, here as well");
+  sub.add_option("--threads", request->threads, "Number of threads; 0: all processors")
+      ->check(CLI::NonNegativeNumber);
+  sub.add_flag("--overwrite", request->overwrite, "Replace existing outputs");
+  sub.add_flag("--quiet", request->quiet, "Print errors only");
+  sub.callback([&action, request] {
+    refuse("options", validate(request->options));
+    action = [request] { run(*request); };
+  });
+}
+
+}  // namespace vdbfuse::tool

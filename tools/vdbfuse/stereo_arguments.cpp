@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "stereo_arguments.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "choice.h"
+
+namespace vdbfuse::tool {
+namespace {
+
+const std::map<std::string, StereoOptions::Mode> kModes = {{"fast", StereoOptions::Mode::Fast},
+                                                           {"paper", StereoOptions::Mode::Paper}};
+
+}  // namespace
+
+std::vector<CLI::Option*> addStereoOptions(CLI::App& app, StereoOptions& options, const std::string& group) {
+  const CLI::Range angle(0.0, 180.0);
+  std::vector<CLI::Option*> all = {
+      choice(app, "--mode", options.mode, kModes,
+             "fast: sweeps over a pyramid; paper: section 3.1 of the paper to the letter, slow"),
+      app.add_option("--neighbours", options.partners.count, "Photographs that each is matched with")
+          ->check(CLI::Range(1, 64))
+          ->capture_default_str(),
+      app.add_option("--min-angle", options.partners.min_angle_deg,
+                     "Least angle between the lines of sight of two that are matched, degrees")
+          ->check(angle)
+          ->capture_default_str(),
+      app.add_option("--max-angle", options.partners.max_angle_deg, "Largest angle, degrees")
+          ->check(angle)
+          ->capture_default_str(),
+      app.add_option("--window", options.window_px, "Side of the square that is correlated, pixels; odd")
+          ->check(CLI::Range(3, 15))
+          ->capture_default_str(),
+      app.add_option("--hypotheses", options.hypotheses, "Depths a pixel may have")
+          ->check(CLI::Range(1, 4))
+          ->capture_default_str(),
+      app.add_option("--min-confidence", options.min_confidence, "Pixels with less have no depth")
+          ->check(CLI::Range(0.0, 1.0))
+          ->capture_default_str(),
+      app.add_option("--surface-sweeps", options.surface_sweeps,
+                     "Of --mode fast: sweeps along the slant of what was found before")
+          ->check(CLI::Range(0, 10))
+          ->capture_default_str(),
+      app.add_flag_callback(
+          "--no-cross-check", [&options] { options.cross_check = StereoOptions::CrossCheck::Off; },
+          "Of --mode fast: leave out the pass that weighs the depth maps against each other")};
+  for (CLI::Option* option : all) option->group(group);
+  return all;
+}
+
+ImageSet readPhotographs(const std::filesystem::path& path, const ImageReadOptions& options,
+                         std::size_t most) {
+  ImageSet set = readImageSet(path, options);
+  if (most == 0 || most >= set.photographs.size()) return set;
+  std::vector<PhotographHeader> headers;
+  for (std::size_t i = 0; i < most; ++i) headers.push_back(set.photographs.header(i));
+  set.photographs = PhotographSequence(
+      std::move(headers),
+      [all = set.photographs](std::size_t index, Photograph& photograph) { photograph = all.load(index); });
+  return set;
+}
+
+Json jsonOf(const StereoOptions& options) {
+  const bool is_fast = options.mode == StereoOptions::Mode::Fast;
+  Json json = {{"mode", is_fast ? "fast" : "paper"},
+               {"neighbours", options.partners.count},
+               {"min_angle_deg", options.partners.min_angle_deg},
+               {"max_angle_deg", options.partners.max_angle_deg},
+               {"window_px", options.window_px},
+               {"bbox", nullptr},
+               {"min_depth", options.min_depth},
+               {"max_depth", options.max_depth},
+               {"hypotheses", options.hypotheses},
+               {"min_confidence", options.min_confidence},
+               {"surface_sweeps", options.surface_sweeps},
+               {"cross_check", options.cross_check == StereoOptions::CrossCheck::On}};
+  if (options.domain) {
+    const Eigen::Vector3d low = options.domain->min(), high = options.domain->max();
+    json["bbox"] = {low.x(), low.y(), low.z(), high.x(), high.y(), high.z()};
+  }
+  return json;
+}
+
+}  // namespace vdbfuse::tool
