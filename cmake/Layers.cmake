@@ -16,7 +16,7 @@ set(VDBFUSE_LAYERS
     3:evaluation  # accuracy, completeness, topology of a mesh against the truth
     3:synth       # synthetic scanner
     3:pcl         # bridge to the Point Cloud Library, a library of its own
-    4:formats     # data sets of depth maps, one pair of files a format
+    4:formats     # data sets of depth maps and of photographs, one pair of files a format
     4:fusion      # reliability, rho, sigma, TSDF
     4:surface     # field, mesh extraction
     4:report      # pictures, slices

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "formats/colmap.h"
+#include "formats/colmap_model_writer.h"
 #include "formats/frames.h"
 #include "formats/image_writer.h"
-#include "formats/photo_writer.h"
 #include "io/colmap_map.h"
 #include "io/file_bytes.h"
 #include "vdbfuse/io/png.h"
@@ -16,7 +15,6 @@ namespace vdbfuse {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr char kPointTitle[] = "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
 
 struct Observation {
   std::size_t view = 0;
@@ -28,13 +26,6 @@ struct SparsePoint {
   Eigen::Vector3d position;
   Rgb8 color{};
   std::vector<Observation> seen;
-};
-
-// What is written about a view.
-struct WrittenView {
-  std::string file;
-  Pinhole camera;  ///< of the picture
-  RigidTransform world_from_camera;
 };
 
 bool hasPicture(const View& view) { return !view.map.color.empty() && !view.color_sensor; }
@@ -103,7 +94,7 @@ std::vector<Image<float>> normalsOf(const View& view) {
   return normals;
 }
 
-WrittenView writeView(const fs::path& folder, const View& view, const std::string& name) {
+ColmapView writeView(const fs::path& folder, const View& view, const std::string& name) {
   const std::string file = name + ".png";
   const Image<Rgb8> picture = pictureOf(view);
   writePng(folder / "images" / file, picture);
@@ -113,94 +104,12 @@ WrittenView writeView(const fs::path& folder, const View& view, const std::strin
           view.world_from_camera};
 }
 
-std::string camerasText(const std::vector<Pinhole>& cameras) {
-  std::string text = "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
-  for (std::size_t i = 0; i < cameras.size(); ++i) {
-    const Pinhole& c = cameras[i];
-    text += std::to_string(i + 1) + " PINHOLE " + std::to_string(c.width) + " " + std::to_string(c.height) +
-            numbersText({c.fx, c.fy, c.cx + 0.5, c.cy + 0.5}) + "\n";
-  }
-  return text;
-}
-
-// camera_from_world.
-std::array<double, 7> poseNumbers(const WrittenView& view) {
-  const RigidTransform pose = view.world_from_camera.inverse();
-  const Eigen::Quaterniond q(pose.linear());
-  const Eigen::Vector3d t = pose.translation();
-  return {q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z()};
-}
-
-std::string imageText(std::size_t index, const WrittenView& view, std::size_t camera,
-                      const std::string& points) {
-  std::string text = std::to_string(index + 1);
-  for (const double number : poseNumbers(view)) text += numbersText({number});
-  return text + " " + std::to_string(camera + 1) + " " + view.file + "\n" + points + "\n";
-}
-
-// The cameras that differ, and which of them each view has.
-struct CameraList {
-  std::vector<Pinhole> cameras;
-  std::vector<std::size_t> of_view;
-
-  explicit CameraList(const std::vector<WrittenView>& views) {
-    for (const WrittenView& view : views) {
-      const auto found = std::find(cameras.begin(), cameras.end(), view.camera);
-      of_view.push_back(static_cast<std::size_t>(found - cameras.begin()));
-      if (found == cameras.end()) cameras.push_back(view.camera);
-    }
-  }
-};
-
-// `seen` are the views' lines of points.
-void writeTextModel(const fs::path& folder, const std::vector<WrittenView>& views,
-                    const std::vector<std::string>& seen, const std::string& points) {
-  const CameraList list(views);
-  std::string images =
-      "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n# POINTS2D[] as (X, Y, POINT3D_ID)\n";
-  for (std::size_t i = 0; i < views.size(); ++i) images += imageText(i, views[i], list.of_view[i], seen[i]);
-  io::writeFileBytes(folder / "cameras.txt", camerasText(list.cameras));
-  io::writeFileBytes(folder / "images.txt", images);
-  io::writeFileBytes(folder / "points3D.txt", points);
-}
-
-template <class T>
-void append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-// Without points.
-void writeBinaryModel(const fs::path& folder, const std::vector<WrittenView>& views) {
-  constexpr std::uint32_t kPinhole = 1;
-  const CameraList list(views);
-  std::string cameras, images;
-  append<std::uint64_t>(cameras, list.cameras.size());
-  for (std::size_t i = 0; i < list.cameras.size(); ++i) {
-    const Pinhole& c = list.cameras[i];
-    append(cameras, static_cast<std::uint32_t>(i + 1));
-    append(cameras, kPinhole);
-    for (const int side : {c.width, c.height}) append(cameras, static_cast<std::uint64_t>(side));
-    for (const double value : {c.fx, c.fy, c.cx + 0.5, c.cy + 0.5}) append(cameras, value);
-  }
-  append<std::uint64_t>(images, views.size());
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    append(images, static_cast<std::uint32_t>(i + 1));
-    for (const double value : poseNumbers(views[i])) append(images, value);
-    append(images, static_cast<std::uint32_t>(list.of_view[i] + 1));
-    images += views[i].file + '\0';
-    append(images, std::uint64_t{0});
-  }
-  io::writeFileBytes(folder / "cameras.bin", cameras);
-  io::writeFileBytes(folder / "images.bin", images);
-  io::writeFileBytes(folder / "points3D.bin", std::string(sizeof(std::uint64_t), '\0'));
-}
-
 // The lists of images and of points, which name each other.
-void writeModel(const fs::path& folder, const std::vector<WrittenView>& views,
+void writeModel(const fs::path& folder, const std::vector<ColmapView>& views,
                 const std::vector<SparsePoint>& points) {
   std::vector<std::string> seen(views.size());
   std::vector<std::size_t> counts(views.size(), 0);
-  std::string point_text = kPointTitle;
+  std::string point_text = kColmapPointTitle;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SparsePoint& p = points[i];
     if (p.seen.size() < 2) continue;
@@ -214,12 +123,12 @@ void writeModel(const fs::path& folder, const std::vector<WrittenView>& views,
     }
     point_text += "\n";
   }
-  writeTextModel(folder / "sparse", views, seen, point_text);
+  writeColmapText(folder / "sparse", views, seen, point_text);
 }
 
-void writeConfigurations(const fs::path& folder, const std::vector<WrittenView>& views) {
+void writeConfigurations(const fs::path& folder, const std::vector<ColmapView>& views) {
   std::string fusion, stereo;
-  for (const WrittenView& view : views) {
+  for (const ColmapView& view : views) {
     fusion += view.file + "\n";
     stereo += view.file + "\n__auto__, 20\n";
   }
@@ -243,29 +152,13 @@ void writeColmap(const fs::path& folder, const ViewSequence& views, const WriteO
     addPoints(points, views.load(i), of_a_view);
     step.advance();
   }
-  std::vector<WrittenView> written;
+  std::vector<ColmapView> written;
   forEachView(views, progress, [&](const View& view, const std::string& name) {
     written.push_back(writeView(folder, view, name));
     addObservations(points, view, written.size() - 1, written.back().camera);
   });
   writeModel(folder, written, points);
   writeConfigurations(folder, written);
-}
-
-void writeColmapImages(const fs::path& folder, const PhotographSequence& photographs,
-                       const ImageWriteOptions& options, const Progress& progress) {
-  createFolder(folder / "sparse");
-  const std::vector<std::string> names = writePictures(folder, "images", photographs, progress);
-  std::vector<WrittenView> views;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const PhotographHeader& header = photographs.header(i);
-    views.push_back({names[i] + ".png", header.camera, header.world_from_camera});
-  }
-  if (options.encoding == ImageWriteOptions::Encoding::Binary) {
-    writeBinaryModel(folder / "sparse", views);
-  } else {
-    writeTextModel(folder / "sparse", views, std::vector<std::string>(views.size()), kPointTitle);
-  }
 }
 
 }  // namespace vdbfuse
