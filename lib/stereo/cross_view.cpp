@@ -67,7 +67,7 @@ Testimony seenFrom(const SeenDepths& from, const Pinhole& camera, const RigidTra
     if (at.weight < 0.1F) return;
     forEachPixel(at, [&](int x, int y, float) { nearest(x, y) = std::max(nearest(x, y), at.inverse_depth); });
   });
-  Testimony result{Image<float>(width, height), Image<float>(width, height)};
+  Testimony result{{width, height}, {width, height}, {width, height}, {width, height}};
   Image<float> shares(width, height);
   forEachLanding(from, camera, world_from_camera, [&](const Landing& at) {
     forEachPixel(at, [&](int x, int y, float share) {
@@ -76,6 +76,8 @@ Testimony seenFrom(const SeenDepths& from, const Pinhole& camera, const RigidTra
       const float weight = share * at.weight;
       result.inverse_depth(x, y) += weight * at.inverse_depth;
       result.weight(x, y) += weight;
+      result.off_x(x, y) += weight * (static_cast<float>(at.x - x) + at.fx);
+      result.off_y(x, y) += weight * (static_cast<float>(at.y - y) + at.fy);
       shares(x, y) += share;
     });
   });
@@ -83,6 +85,7 @@ Testimony seenFrom(const SeenDepths& from, const Pinhole& camera, const RigidTra
     float& weight = result.weight.data()[i];
     if (!(weight > 0)) continue;
     result.inverse_depth.data()[i] /= weight;
+    result.off_x.data()[i] /= weight, result.off_y.data()[i] /= weight;
     weight /= shares.data()[i];
   }
   return result;

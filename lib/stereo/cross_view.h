@@ -20,6 +20,8 @@ struct SeenDepths {
 struct Testimony {
   Image<float> inverse_depth;  ///< 0: nothing
   Image<float> weight;         ///< in [0, 1]: confidence
+  /// Middle of what landed at a pixel, from the pixel's own, in pixels: where inverse_depth holds.
+  Image<float> off_x, off_y;
 };
 
 /// Moves every pixel of `from` to where `camera` sees it and spreads it over the four pixels around; what

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <cstdlib>
 
 #include "stereo/matching_constants.h"
 #include "stereo/plane_fit.h"
@@ -18,11 +19,12 @@ namespace {
 constexpr int kFirstLevelSide = 400;          // pixels, longest side of the level of the first sweep at most
 constexpr float kFirstStep = 1.0F;            // pixels of that level
 constexpr float kExactStep = 0.5F;            // the same where no surface sweeps follow
-constexpr float kOtherViewsWeight = 0.5F;     // of another view's depth, beside a partner's peak
-constexpr float kOtherViewsCurvature = 0.3F;  // how well it knows its place
-constexpr int kFirstSweeps = 4;
-constexpr int kSmoothRadius = 4;
-constexpr float kSmoothScale = 0.75F;  // pixels of the level
+static float env(const char* n, float d) { const char* v = std::getenv(n); return v ? std::strtof(v, nullptr) : d; }
+const float kOtherViewsWeight = env("OW", 1);     // of another view's depth, beside a partner's peak
+const float kOtherViewsCurvature = env("OC", 0.3F);  // how well it knows its place
+const int kFirstSweeps = (int)env("F1", 4);
+const int kSmoothRadius = (int)env("SR", 4);
+const float kSmoothScale = env("SS", 1);  // pixels of the level
 
 // One level of a match.
 struct Stage {
@@ -167,19 +169,27 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
 }
 
 // Depths of other views as peaks at (w − from)/step.
-void addOthers(const std::vector<Testimony>& others, int x, int y, float from, float step,
+void addOthers(const std::vector<Testimony>& others, const PlaneMap& planes, int x, int y, float from, float step,
                std::vector<Peak>& peaks) {
   for (std::size_t v = 0; v < others.size(); ++v) {
     const float weight = others[v].weight(x, y);
+    // What landed beside the pixel is brought there along the slant.
+    const float slant = planes.dx(x, y) * others[v].off_x(x, y) + planes.dy(x, y) * others[v].off_y(x, y);
     if (weight > 0)
-      peaks.push_back({(others[v].inverse_depth(x, y) - from) / step, kOtherViewsWeight * weight,
+      peaks.push_back({(others[v].inverse_depth(x, y) - slant - from) / step, kOtherViewsWeight * weight,
                        kOtherViewsCurvature, kOtherViews + static_cast<std::int32_t>(v)});
   }
+}
+
+PlaneMap planesOf(const Stage& stage, const DepthLayer& layer) {
+  return planeFitted(layer.inverse_depth, layer.score,
+                     {kSmoothRadius, kSmoothScale * stage.pixel, env("FS", 8) * kSmoothScale * stage.pixel, (int)env("RO", 4)});
 }
 
 // The depth that most of the pixel's own and those of other views agree with.
 DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<Testimony>& others) {
   DepthLayer layer = own;
+  const PlaneMap planes = planesOf(stage, own);
   const float step = kExactStep * stage.pixel;
   parallelFor(static_cast<std::size_t>(own.score.height()), 16, [&](std::size_t begin, std::size_t end) {
     Voting voting(static_cast<float>(kVoteSigma), 1);
@@ -192,7 +202,7 @@ DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<T
         if (own.inverse_depth(x, y) > 0)
           peaks.push_back(
               {(own.inverse_depth(x, y) - stage.first) / step, own.score(x, y), kOtherViewsCurvature, 0});
-        addOthers(others, x, y, stage.first, step, peaks);
+        addOthers(others, planes, x, y, stage.first, step, peaks);
         const Modes& modes = voting.count(peaks);
         if (modes.empty()) continue;
         layer.inverse_depth(x, y) = stage.first + modes[0].step * step;
@@ -204,16 +214,12 @@ DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<T
 }
 
 // Peaks of all partners around a surface.
-PlaneMap planesOf(const Stage& stage, const DepthLayer& layer) {
-  return planeFitted(layer.inverse_depth, layer.score,
-                     {kSmoothRadius, kSmoothScale * stage.pixel, 4 * kSmoothScale * stage.pixel, 3});
-}
-
 DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
                         const std::vector<Testimony>& others = {}) {
   const float step = kExactStep * stage.pixel, step_px = kExactStep;
   const SweepRange range{-step * static_cast<float>(reach), step, 2 * reach + 1};
-  const Guide guide = guideOf(before, planesOf(stage, before));
+  const PlaneMap planes = planesOf(stage, before);
+  const Guide guide = guideOf(before, planes);
   DepthLayer layer = before;
   for (float& score : layer.score) score *= 0.5F;
   const Image<float> base = filled(guide.inverse_depth, 0.5F * (stage.first + stage.last));
@@ -233,7 +239,7 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
         peaks.push_back({best[j].step[pixel], best[j].score[pixel], best[j].curvature[pixel],
                          static_cast<std::int32_t>(j)});
       }
-      addOthers(others, x, y, base(x, y) + range.first, range.step, peaks);
+      addOthers(others, planes, x, y, base(x, y) + range.first, range.step, peaks);
       const Modes& modes = voting.count(peaks);
       if (modes.empty()) return;
       const float before_score = before.score(x, y) + before.support(x, y);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "vdbfuse/base/parallel.h"
@@ -74,7 +75,7 @@ Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
 }
 
 Guide guideOf(const DepthLayer& layer, const PlaneMap& planes) {
-  constexpr float kLeastShare = 0.3F;
+  static const float kLeastShare = getenv("LS") ? strtof(getenv("LS"), nullptr) : 0.2F;
   constexpr int kFurthest = 12;
   constexpr std::array<std::array<int, 2>, 8> kDirections = {
       {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
