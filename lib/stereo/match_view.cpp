@@ -294,7 +294,7 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
       if (debug_hook) debug_hook(layer, level, "start");
       const int sweeps = is_first ? kFirstSweeps : level == 0 ? options.surface_sweeps : 2;
       for (int sweep = 0; sweep < sweeps; ++sweep) {
-        layer = surfaceSweep(stage, layer, sweep == 0 ? 5 : 4);
+        layer = surfaceSweep(stage, layer, sweep == 0 ? (int)env("R0", 5) : (int)env("R1", 4));
         if (debug_hook) debug_hook(layer, level, "swept");
       }
     }
@@ -303,9 +303,9 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
 }
 
 DepthLayer crossChecked(const MatchInput& input, const StereoOptions& options, const DepthLayer& own,
-                        const std::vector<Testimony>& others) {
+                        const std::vector<Testimony>& others, int reach) {
   const Stage stage = stageOf(input, 0, options, kSurfaceThreshold);
-  return surfaceSweep(stage, agreed(stage, own, others), 4, others);
+  return surfaceSweep(stage, agreed(stage, own, others), reach, others);
 }
 
 }  // namespace vdbfuse::stereo

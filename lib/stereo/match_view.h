@@ -38,6 +38,6 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
 /// Weighs the depths against what other views say of them, and sweeps once more along the result. What is not
 /// found keeps its value and half its score.
 DepthLayer crossChecked(const MatchInput& input, const StereoOptions& options, const DepthLayer& own,
-                        const std::vector<Testimony>& others);
+                        const std::vector<Testimony>& others, int reach);
 
 }  // namespace vdbfuse::stereo

@@ -128,8 +128,8 @@ class FastStereo {
     match();
     if (options_.cross_check == StereoOptions::CrossCheck::On && options_.surface_sweeps > 0) {
       timer.start("cross-check");
-      constexpr int kRounds = 2;
-      for (int round = 0; round < kRounds; ++round) crossCheck();
+      static const int kRounds = getenv("R") ? atoi(getenv("R")) : 2;
+      for (int round = 0; round < kRounds; ++round) crossCheck(getenv("CP") ? getenv("CP")[round] - 48 : 4);
     }
     timer.start("write");
     StereoResult result;
@@ -155,7 +155,7 @@ class FastStereo {
     }
   }
 
-  void crossCheck() {
+  void crossCheck(int reach) {
     if (others_.empty())
       others_ =
           choosePartners(plan_.headers, plan_.depths, {.count = 6, .min_angle_deg = 0, .max_angle_deg = 60});
@@ -175,7 +175,7 @@ class FastStereo {
       });
       checked.push_back(layers_[i]);
       checked.back().front() =
-          crossChecked(matchInput(plan_, i, store_), options_, layers_[i].front(), testimonies);
+          crossChecked(matchInput(plan_, i, store_), options_, layers_[i].front(), testimonies, reach);
       step.advance();
     }
     layers_ = std::move(checked);
