@@ -124,14 +124,16 @@ void forEachWindow(const SweepTile& tile, const Use& use) {
   }
 }
 
-std::vector<Peak> peaksOf(const PeakLists& lists, std::size_t pixel) {
-  std::vector<Peak> peaks;
+// Replaces `peaks`, all with the same curvature: what windows that face the camera tell of it is worth
+// little.
+void collect(const PeakLists& lists, std::size_t pixel, std::vector<Peak>& peaks) {
+  peaks.clear();
   const auto partners = static_cast<std::size_t>(lists.partners);
   for (std::size_t list = pixel * partners; list < (pixel + 1) * partners; ++list) {
-    const auto begin = lists.peaks.begin() + static_cast<std::ptrdiff_t>(list * kMostPeaks);
-    peaks.insert(peaks.end(), begin, begin + lists.counts[list]);
+    const Peak* first = lists.peaks.data() + list * kMostPeaks;
+    peaks.insert(peaks.end(), first, first + lists.counts[list]);
   }
-  return peaks;
+  for (Peak& peak : peaks) peak.curvature = 1;
 }
 
 // All inverse depths; a step more on each side, because ends are no peaks.
@@ -157,9 +159,9 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
       sweepForAll(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, static_cast<int>(j),
                   memory, lists);
     Voting voting(static_cast<float>(kVoteSigma) * kExactStep / step_px, layers.size() + 1);
+    std::vector<Peak> peaks;
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
-      std::vector<Peak> peaks = peaksOf(lists, pixel);
-      for (Peak& peak : peaks) peak.curvature = 1;
+      collect(lists, pixel, peaks);
       const Modes& modes = voting.count(peaks);
       for (std::size_t k = 0; k < std::min(modes.size(), layers.size()); ++k) {
         const float w = stage.first + range.first + modes[k].step * range.step;
