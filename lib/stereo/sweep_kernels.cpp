@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/sweep_kernels.h"
+#include "stereo/sweep_spans.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stereo/sweep_kernels.cpp"
@@ -79,13 +80,13 @@ class Warp {
     for (std::size_t i = 0; i < 3; ++i) motion_.a[3 * i + 2] += offset * motion.b[i];
   }
 
-  // Fetches the texels of `count` pixels; `valid` becomes all bits where the pixel and a window around it lie
+  // Fetches the texels of some pixels; `valid` becomes all bits where the pixel and a window around it lie
   // in the picture.
-  HWY_INLINE void fetch(float x, float y, const float* base, std::size_t count, std::int32_t* valid) const {
+  HWY_INLINE void fetch(float x, float y, const float* base, const Span& span, std::int32_t* valid) const {
     const Floats d;
     const auto& a = motion_.a;
     const float start[3] = {a[1] * y + a[2], a[4] * y + a[5], a[7] * y + a[8]};
-    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    for (std::size_t i = span.begin; i < span.end; i += hn::Lanes(d)) {
       const FloatVec column = hn::Iota(d, x + static_cast<float>(i)), w = hn::Load(d, base + i);
       const auto coordinate = [&](std::size_t r) HWY_ATTR {
         return hn::MulAdd(w, set(motion_.b[r]), hn::MulAdd(column, set(a[3 * r]), set(start[r])));
@@ -94,10 +95,10 @@ class Warp {
       place(hn::Mul(coordinate(0), inverse), hn::Mul(coordinate(1), inverse), hn::Gt(z, set(kLeastRatio)), i,
             valid + i);
       // A vector later, because what was just stored is not quickly read again in parts.
-      if (i > 0) copyTexels(i - hn::Lanes(d));
+      if (i > span.begin) copyTexels(i - hn::Lanes(d));
     }
-    copyTexels(count - hn::Lanes(d));
-    if (mask_ != nullptr) applyMask(count, valid);
+    if (!span.isEmpty()) copyTexels(span.end - hn::Lanes(d));
+    if (mask_ != nullptr) applyMask(span, valid);
   }
 
   // What lies between the texels fetched, from pixel i on.
@@ -138,8 +139,8 @@ class Warp {
     hn::Store(pairWeights(hn::And(fv, set(255))), di, weights_ + 2 * i + hn::Lanes(di));
   }
 
-  void applyMask(std::size_t count, std::int32_t* valid) const {
-    for (std::size_t i = 0; i < count; ++i)
+  void applyMask(const Span& span, std::int32_t* valid) const {
+    for (std::size_t i = span.begin; i < span.end; ++i)
       if (mask_[index_[i]] == 0) valid[i] = 0;
   }
 
@@ -151,20 +152,25 @@ class Warp {
   float margin_, right_, bottom_;
 };
 
-// Running sums down the columns of v, v² and u·v over the last `window` rows.
-HWY_INLINE void addRow(const Warp& warp, const std::int32_t* products, std::size_t count, std::size_t stride,
-                       std::int32_t* oldest, std::int32_t* columns) {
+// Running sums down the columns of v, v² and u·v over the last `window` rows. What `before`, the span of the
+// oldest of them, has beyond that of this row counts as 0: it leaves the sums, and no window asks for it.
+HWY_INLINE void addRow(const Warp& warp, const Span& span, const Span& before, const std::int32_t* products,
+                       std::size_t stride, std::int32_t* oldest, std::int32_t* columns) {
   const Ints d;
   const auto add = [&](std::int32_t* sum, IntVec x)
                        HWY_ATTR { hn::Store(hn::Add(hn::Load(d, sum), x), d, sum); };
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const IntVec v = warp.value(i), old = hn::ShiftLeft<16>(hn::Load(d, oldest + i));
-    const IntVec with_old = hn::Or(v, old);
+  const auto replace = [&](std::size_t i, IntVec v) HWY_ATTR {
+    const IntVec old = hn::ShiftLeft<16>(hn::Load(d, oldest + i)), with_old = hn::Or(v, old);
     add(columns + i, hn::Sub(v, hn::ShiftRight<16>(old)));
     add(columns + stride + i, pairProducts(with_old, hn::Sub(v, old)));
     add(columns + 2 * stride + i, pairProducts(with_old, hn::Load(d, products + i)));
     hn::Store(v, d, oldest + i);
-  }
+  };
+  for (std::size_t i = span.begin; i < span.end; i += hn::Lanes(d)) replace(i, warp.value(i));
+  const std::size_t left = span.isEmpty() ? before.end : std::min(before.end, span.begin);
+  const std::size_t right = span.isEmpty() ? before.end : std::max(before.begin, span.end);
+  for (std::size_t i = before.begin; i < left; i += hn::Lanes(d)) replace(i, hn::Zero(d));
+  for (std::size_t i = right; i < before.end; i += hn::Lanes(d)) replace(i, hn::Zero(d));
 }
 
 // Σ of 2r + 1 neighbours from x on.
@@ -322,16 +328,23 @@ class ListSink {
   int index_;
 };
 
-// A local maximum lies at the sample before this one where the curve falls now and did not before.
+// Three samples of all curves of a tile, the last one new.
+struct Samples {
+  const float *before, *at;
+  float* now;
+};
+
+// A local maximum lies at the sample before this one where the curve falls now and did not before. `from`:
+// pixel at which the row begins.
 template <class Sum, class Sink>
-HWY_INLINE void lookForPeaks(const RowOfWindows& row, Sum v, Sum vv, Sum uv, std::size_t from,
-                             std::size_t width, float k, float threshold, const float* before,
-                             const float* at, float* now, const Sink& sink) {
+HWY_INLINE void lookForPeaks(const RowOfWindows& row, Sum v, Sum vv, Sum uv, const Span& span,
+                             std::size_t from, const Samples& samples, float k, float threshold,
+                             const Sink& sink) {
   const Floats d;
-  for (std::size_t i = 0; i < width; i += hn::Lanes(d)) {
+  for (std::size_t i = span.begin; i < span.end; i += hn::Lanes(d)) {
     const FloatVec after = row.at(i, v.next(), vv.next(), uv.next());
-    const FloatVec s0 = hn::Load(d, before + from + i), s1 = hn::Load(d, at + from + i);
-    hn::Store(after, d, now + from + i);
+    const FloatVec s0 = hn::Load(d, samples.before + from + i), s1 = hn::Load(d, samples.at + from + i);
+    hn::Store(after, d, samples.now + from + i);
     // A sample without a window is no lower neighbour.
     const auto is_peak =
         hn::And(hn::And(hn::Gt(s1, set(threshold)), hn::And(hn::Gt(s1, s0), hn::Ge(s1, after))),
@@ -340,47 +353,65 @@ HWY_INLINE void lookForPeaks(const RowOfWindows& row, Sum v, Sum vv, Sum uv, std
   }
 }
 
+// The windows whose last row has just been added: those of row `line` of the tile.
+template <class Sink>
+HWY_INLINE void lookAtLine(const SweepTile& tile, const Span& span, int line, const SweepLimits& limits,
+                           const SweepMemory& memory, const Samples& samples, float k, const Sink& sink) {
+  const auto stride = static_cast<std::size_t>(tile.stride);
+  const std::size_t from = tile.at(0, line);
+  const int window = tile.window();
+  const std::size_t centre = static_cast<std::size_t>((line + tile.radius) % window) * stride;
+  const RowOfWindows row{memory.valid.data() + centre + static_cast<std::size_t>(tile.radius),
+                         tile.mean.data() + from, tile.inverse_spread.data() + from,
+                         1.0F / static_cast<float>(window * window), limits.least_spread2};
+  const auto look = [&](auto v, auto vv, auto uv) HWY_ATTR {
+    lookForPeaks(row, v, vv, uv, span, from, samples, k, limits.threshold, sink);
+  };
+  const std::int32_t *v = memory.columns.data() + span.begin, *vv = v + stride, *uv = vv + stride;
+  if (window == 7)
+    look(Sums7(v), Sums7(vv), Sums7(uv));
+  else
+    look(Sums(v, window), Sums(vv, window), Sums(uv, window));
+}
+
+// All windows at one inverse depth.
+template <class Sink>
+HWY_INLINE void sweepOnce(const SweepTile& tile, const SweepSpans& spans, const Warp& warp,
+                          const SweepLimits& limits, SweepMemory& memory, const Samples& samples, float k,
+                          const Sink& sink) {
+  const auto stride = static_cast<std::size_t>(tile.stride), rows = static_cast<std::size_t>(tile.window());
+  std::fill(memory.ring.begin(), memory.ring.end(), 0);
+  std::fill(memory.columns.begin(), memory.columns.end(), 0);
+  for (std::size_t y = 0; y < spans.pixels.size(); ++y) {
+    const std::size_t slot = y % rows * stride;
+    const int row = static_cast<int>(y), line = row - 2 * tile.radius;
+    const Span span = spans.pixels[y], before = y < rows ? Span{} : spans.pixels[y - rows];
+    warp.fetch(static_cast<float>(tile.x0 - tile.radius), static_cast<float>(tile.y0 - tile.radius + row),
+               tile.base.data() + tile.at(0, row), span, memory.valid.data() + slot);
+    addRow(warp, span, before, tile.products.data() + tile.at(0, row), stride, memory.ring.data() + slot,
+           memory.columns.data());
+    if (line < 0 || spans.windows[static_cast<std::size_t>(line)].isEmpty()) continue;
+    lookAtLine(tile, spans.windows[static_cast<std::size_t>(line)], line, limits, memory, samples, k, sink);
+  }
+}
+
 template <class Sink>
 void sweep(const SweepTile& tile, const PictureLevel& partner, const ImageMotion& motion,
            const SweepRange& range, const SweepLimits& limits, SweepMemory& memory, const Sink& sink) {
-  const int window = tile.window();
-  const auto stride = static_cast<std::size_t>(tile.stride), width = static_cast<std::size_t>(tile.width);
-  const auto rows = static_cast<std::size_t>(window);
+  const auto stride = static_cast<std::size_t>(tile.stride), rows = static_cast<std::size_t>(tile.window());
   // Loads from a row's end may reach beyond it.
-  memory.ring.resize((rows + 2) * stride), memory.valid.resize((rows + 2) * stride);
+  memory.ring.resize(rows * stride), memory.valid.resize((rows + 1) * stride);
   memory.columns.resize(3 * stride + 2 * kVectorLanes);
   memory.index.resize(stride), memory.weights.resize(2 * stride), memory.texels.resize(2 * stride);
   for (AlignedFloats& curve : memory.curve) curve.assign(tile.at(0, tile.height), kNoPeak);
+  const SweepSpans spans = sweepSpans(tile);
   for (int k = 0; k < range.count; ++k) {
     const Warp warp(partner, motion, range.first + static_cast<float>(k) * range.step, tile.radius, memory);
-    std::fill(memory.ring.begin(), memory.ring.end(), 0);
-    std::fill(memory.columns.begin(), memory.columns.end(), 0);
-    float* now = memory.curve[static_cast<std::size_t>(k % 3)].data();
-    const float* at = memory.curve[static_cast<std::size_t>((k + 2) % 3)].data();
-    const float* before = memory.curve[static_cast<std::size_t>((k + 1) % 3)].data();
-    for (int y = 0; y < tile.height + 2 * tile.radius; ++y) {
-      const std::size_t slot = static_cast<std::size_t>(y % window) * stride;
-      warp.fetch(static_cast<float>(tile.x0 - tile.radius), static_cast<float>(tile.y0 - tile.radius + y),
-                 tile.base.data() + tile.at(0, y), stride, memory.valid.data() + slot);
-      addRow(warp, tile.products.data() + tile.at(0, y), stride, stride, memory.ring.data() + slot,
-             memory.columns.data());
-      const int line = y - 2 * tile.radius;
-      if (line < 0) continue;
-      const std::size_t from = tile.at(0, line);
-      const std::size_t centre = static_cast<std::size_t>((y - tile.radius) % window) * stride;
-      const RowOfWindows windows{memory.valid.data() + centre + static_cast<std::size_t>(tile.radius),
-                                 tile.mean.data() + from, tile.inverse_spread.data() + from,
-                                 1.0F / static_cast<float>(window * window), limits.least_spread2};
-      const auto look = [&](auto... sums) HWY_ATTR {
-        lookForPeaks(windows, sums..., from, width, static_cast<float>(k - 1), limits.threshold, before, at,
-                     now, sink);
-      };
-      const std::int32_t *v = memory.columns.data(), *vv = v + stride, *uv = vv + stride;
-      if (window == 7)
-        look(Sums7(v), Sums7(vv), Sums7(uv));
-      else
-        look(Sums(v, window), Sums(vv, window), Sums(uv, window));
-    }
+    const auto curve = [&](int age) {
+      return memory.curve[static_cast<std::size_t>((k + 3 - age) % 3)].data();
+    };
+    sweepOnce(tile, spans, warp, limits, memory, {curve(2), curve(1), curve(0)}, static_cast<float>(k - 1),
+              sink);
   }
 }
 
