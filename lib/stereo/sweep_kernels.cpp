@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "stereo/reciprocals-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace vdbfuse::stereo {
 namespace HWY_NAMESPACE {
@@ -42,18 +44,6 @@ HWY_INLINE IntVec pairProducts(IntVec a, IntVec b) {
 
 // 256 − f for the first and f for the second of a pair.
 HWY_INLINE IntVec pairWeights(IntVec f) { return hn::Add(hn::Sub(hn::ShiftLeft<16>(f), f), set(256)); }
-
-// 1/x and 1/√x to the last bits but one or two: a guess of the processor and a step of Newton's method,
-// several times as fast as its division.
-HWY_INLINE FloatVec reciprocal(FloatVec x) {
-  const FloatVec guess = hn::ApproximateReciprocal(x);
-  return hn::MulAdd(guess, hn::NegMulAdd(x, guess, set(1.0F)), guess);
-}
-HWY_INLINE FloatVec reciprocalRoot(FloatVec x) {
-  const FloatVec guess = hn::ApproximateReciprocalSqrt(x);
-  const FloatVec half = hn::Mul(hn::Mul(x, set(0.5F)), guess);
-  return hn::Mul(guess, hn::NegMulAdd(half, guess, set(1.5F)));
-}
 
 // One row of a partner's picture as the reference would see it, in two passes: where its pixels come from,
 // and what lies between their texels.
@@ -91,7 +81,7 @@ class Warp {
       const auto coordinate = [&](std::size_t r) HWY_ATTR {
         return hn::MulAdd(w, set(motion_.b[r]), hn::MulAdd(column, set(a[3 * r]), set(start[r])));
       };
-      const FloatVec z = coordinate(2), inverse = reciprocal(z);
+      const FloatVec z = coordinate(2), inverse = reciprocal(Floats(), z);
       place(hn::Mul(coordinate(0), inverse), hn::Mul(coordinate(1), inverse), hn::Gt(z, set(kLeastRatio)), i,
             valid + i);
       // A vector later, because what was just stored is not quickly read again in parts.
@@ -257,7 +247,7 @@ struct RowOfWindows {
     const FloatVec score = hn::Mul(covariance, hn::Load(d, inverse_spread + i));
     const auto good = hn::And(hn::MaskFromVec(hn::BitCast(d, hn::LoadU(di, valid + i))),
                               hn::Ge(spread2, set(least_spread2)));
-    return hn::IfThenElse(good, hn::Mul(score, reciprocalRoot(spread2)), set(kNoPeak));
+    return hn::IfThenElse(good, hn::Mul(score, reciprocalRoot(Floats(), spread2)), set(kNoPeak));
   }
 };
 
@@ -268,7 +258,7 @@ struct Parabola {
 HWY_INLINE Parabola parabola(FloatVec before, FloatVec at, FloatVec after, float k) {
   const FloatVec curvature = hn::Sub(hn::Add(at, at), hn::Add(before, after));
   const FloatVec slope = hn::Mul(set(0.5F), hn::Sub(after, before));
-  const FloatVec shift = hn::Mul(slope, reciprocal(curvature));
+  const FloatVec shift = hn::Mul(slope, reciprocal(Floats(), curvature));
   return {hn::Add(set(k), shift), hn::MulAdd(hn::Mul(set(0.5F), shift), slope, at), curvature};
 }
 
