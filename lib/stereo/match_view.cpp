@@ -4,27 +4,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <cstdlib>
 
 #include "stereo/matching_constants.h"
+#include "stereo/other_voters.h"
 #include "stereo/plane_fit.h"
 #include "stereo/reference_level.h"
+#include "stereo/vote_kernels.h"
 #include "stereo/votes.h"
 #include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse::stereo {
-void (*debug_hook)(const DepthLayer&, int level, const char* what) = nullptr;
 namespace {
 
-constexpr int kFirstLevelSide = 400;          // pixels, longest side of the level of the first sweep at most
-constexpr float kFirstStep = 1.0F;            // pixels of that level
-constexpr float kExactStep = 0.5F;            // the same where no surface sweeps follow
-static float env(const char* n, float d) { const char* v = std::getenv(n); return v ? std::strtof(v, nullptr) : d; }
-const float kOtherViewsWeight = env("OW", 1);     // of another view's depth, beside a partner's peak
-const float kOtherViewsCurvature = env("OC", 0.3F);  // how well it knows its place
-const int kFirstSweeps = (int)env("F1", 4);
-const int kSmoothRadius = (int)env("SR", 4);
-const float kSmoothScale = env("SS", 1);  // pixels of the level
+constexpr int kFirstLevelSide = 400;  // pixels, longest side of the level of the first sweep at most
+constexpr float kFirstStep = 1.0F;    // pixels of that level
+constexpr float kExactStep = 0.5F;    // the same where no surface sweeps follow
+constexpr int kFirstSweeps = 4;
+constexpr int kSmoothRadius = 4;
+constexpr float kSmoothScale = 1, kFirstSmoothScale = 8;  // pixels of the level
+constexpr int kSmoothRounds = 4;
 
 // One level of a match.
 struct Stage {
@@ -102,6 +100,11 @@ void store(const Mode& mode, float second, float inverse_depth, float step, int 
   layer.spread2(x, y) = mode.spread2 * step * step;
 }
 
+Mode modeOf(const ModeRows& modes, std::size_t pixel) {
+  return {modes.step[pixel], modes.score[pixel], modes.support[pixel],
+          static_cast<std::uint8_t>(modes.voters[pixel]), modes.spread2[pixel]};
+}
+
 template <class Body>
 void forEachTile(const ReferenceLevel& reference, const Body& body) {
   const std::vector<TileRect> tiles = tilesOf(reference);
@@ -121,14 +124,16 @@ void forEachWindow(const SweepTile& tile, const Use& use) {
   }
 }
 
-std::vector<Peak> peaksOf(const PeakLists& lists, std::size_t pixel) {
-  std::vector<Peak> peaks;
+// Replaces `peaks`, all with the same curvature: what windows that face the camera tell of it is worth
+// little.
+void collect(const PeakLists& lists, std::size_t pixel, std::vector<Peak>& peaks) {
+  peaks.clear();
   const auto partners = static_cast<std::size_t>(lists.partners);
   for (std::size_t list = pixel * partners; list < (pixel + 1) * partners; ++list) {
-    const auto begin = lists.peaks.begin() + static_cast<std::ptrdiff_t>(list * kMostPeaks);
-    peaks.insert(peaks.end(), begin, begin + lists.counts[list]);
+    const Peak* first = lists.peaks.data() + list * kMostPeaks;
+    peaks.insert(peaks.end(), first, first + lists.counts[list]);
   }
-  return peaks;
+  for (Peak& peak : peaks) peak.curvature = 1;
 }
 
 // All inverse depths; a step more on each side, because ends are no peaks.
@@ -154,9 +159,9 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
       sweepForAll(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, static_cast<int>(j),
                   memory, lists);
     Voting voting(static_cast<float>(kVoteSigma) * kExactStep / step_px, layers.size() + 1);
+    std::vector<Peak> peaks;
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
-      std::vector<Peak> peaks = peaksOf(lists, pixel);
-      for (Peak& peak : peaks) peak.curvature = 1;
+      collect(lists, pixel, peaks);
       const Modes& modes = voting.count(peaks);
       for (std::size_t k = 0; k < std::min(modes.size(), layers.size()); ++k) {
         const float w = stage.first + range.first + modes[k].step * range.step;
@@ -168,52 +173,57 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
   return layers;
 }
 
-// Depths of other views as peaks at (w − from)/step.
-void addOthers(const std::vector<Testimony>& others, const PlaneMap& planes, int x, int y, float from, float step,
-               std::vector<Peak>& peaks) {
-  for (std::size_t v = 0; v < others.size(); ++v) {
-    const float weight = others[v].weight(x, y);
-    // What landed beside the pixel is brought there along the slant.
-    const float slant = planes.dx(x, y) * others[v].off_x(x, y) + planes.dy(x, y) * others[v].off_y(x, y);
-    if (weight > 0)
-      peaks.push_back({(others[v].inverse_depth(x, y) - slant - from) / step, kOtherViewsWeight * weight,
-                       kOtherViewsCurvature, kOtherViews + static_cast<std::int32_t>(v)});
-  }
+// One row of the level without its pictures, for votes alone, at one inverse depth.
+SweepTile rowOf(const Stage& stage, int y) {
+  SweepTile tile;
+  tile.y0 = y, tile.width = stage.reference.mean.width(), tile.height = 1, tile.radius = 0;
+  tile.stride = (tile.width + kVectorLanes - 1) / kVectorLanes * kVectorLanes;
+  tile.base.assign(tile.at(0, 1), stage.first);
+  tile.inverse_spread.assign(tile.at(0, 1), 0.0F);
+  std::copy_n(stage.reference.inverse_spread.row(y), tile.width, tile.inverse_spread.data());
+  return tile;
 }
 
 PlaneMap planesOf(const Stage& stage, const DepthLayer& layer) {
-  return planeFitted(layer.inverse_depth, layer.score,
-                     {kSmoothRadius, kSmoothScale * stage.pixel, env("FS", 8) * kSmoothScale * stage.pixel, (int)env("RO", 4)});
+  return planeFitted(
+      layer.inverse_depth, layer.score,
+      {kSmoothRadius, kSmoothScale * stage.pixel, kFirstSmoothScale * stage.pixel, kSmoothRounds});
 }
 
 // The depth that most of the pixel's own and those of other views agree with.
 DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<Testimony>& others) {
   DepthLayer layer = own;
   const PlaneMap planes = planesOf(stage, own);
-  const float step = kExactStep * stage.pixel;
+  const SweepRange range{0, kExactStep * stage.pixel, 1};
   parallelFor(static_cast<std::size_t>(own.score.height()), 16, [&](std::size_t begin, std::size_t end) {
-    Voting voting(static_cast<float>(kVoteSigma), 1);
-    std::vector<Peak> peaks;
+    OtherVoters rows;
+    ModeRows modes;
+    std::vector<VoterRows> voters;
     for (std::size_t row = begin; row < end; ++row) {
       const int y = static_cast<int>(row);
-      for (int x = 0; x < own.score.width(); ++x) {
-        if (stage.reference.inverse_spread(x, y) == 0) continue;
-        peaks.clear();
-        if (own.inverse_depth(x, y) > 0)
-          peaks.push_back(
-              {(own.inverse_depth(x, y) - stage.first) / step, own.score(x, y), kOtherViewsCurvature, 0});
-        addOthers(others, planes, x, y, stage.first, step, peaks);
-        const Modes& modes = voting.count(peaks);
-        if (modes.empty()) continue;
-        layer.inverse_depth(x, y) = stage.first + modes[0].step * step;
-        layer.score(x, y) = modes[0].score + modes[0].support;
-      }
+      const SweepTile tile = rowOf(stage, y);
+      AlignedFloats step(tile.base.size()), score(tile.base.size());
+      forEachWindow(tile, [&](std::size_t pixel, int x, int) {
+        if (!(own.inverse_depth(x, y) > 0)) return;
+        step[pixel] = (own.inverse_depth(x, y) - stage.first) / range.step;
+        score[pixel] = own.score(x, y);
+      });
+      voters.clear();
+      addOtherVoters(others, planes, tile, range, rows, voters);
+      voters.insert(voters.begin(), {step.data(), score.data(), rows.curvature.data()});
+      countVotes(voters, 1, static_cast<float>(kVoteSigma), tile.base.size(), modes);
+      forEachWindow(tile, [&](std::size_t pixel, int x, int) {
+        const float sum = modes.score[pixel] + modes.support[pixel];
+        if (sum == 0) return;
+        layer.inverse_depth(x, y) = stage.first + modes.step[pixel] * range.step;
+        layer.score(x, y) = sum;
+      });
     }
   });
   return layer;
 }
 
-// Peaks of all partners around a surface.
+// Peaks of all partners around a surface, and what other views say.
 DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
                         const std::vector<Testimony>& others = {}) {
   const float step = kExactStep * stage.pixel, step_px = kExactStep;
@@ -230,26 +240,24 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
     std::vector<BestPeaks> best(stage.pictures.size());
     for (std::size_t j = 0; j < stage.pictures.size(); ++j)
       sweepForBest(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, memory, best[j]);
-    Voting voting(static_cast<float>(kVoteSigma) * kExactStep / step_px, 2);
-    std::vector<Peak> peaks;
+    OtherVoters other_rows;
+    std::vector<VoterRows> voters;
+    for (const BestPeaks& peaks : best)
+      voters.push_back({peaks.step.data(), peaks.score.data(), peaks.curvature.data()});
+    addOtherVoters(others, planes, tile, range, other_rows, voters);
+    ModeRows modes;
+    countVotes(voters, best.size(), static_cast<float>(kVoteSigma) * kExactStep / step_px,
+               tile.at(0, tile.height), modes);
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
-      peaks.clear();
-      for (std::size_t j = 0; j < best.size(); ++j) {
-        if (best[j].score[pixel] == kNoPeak) continue;
-        peaks.push_back({best[j].step[pixel], best[j].score[pixel], best[j].curvature[pixel],
-                         static_cast<std::int32_t>(j)});
-      }
-      addOthers(others, planes, x, y, base(x, y) + range.first, range.step, peaks);
-      const Modes& modes = voting.count(peaks);
-      if (modes.empty()) return;
+      const Mode mode = modeOf(modes, pixel);
+      if (mode.score + mode.support == 0) return;
       const float before_score = before.score(x, y) + before.support(x, y);
-      if (guide.is_foreign(x, y) && modes[0].score + modes[0].support <= before_score) {
+      if (guide.is_foreign(x, y) && mode.score + mode.support <= before_score) {
         layer.score(x, y) = before.score(x, y);
         return;
       }
-      const float w = base(x, y) + range.first + modes[0].step * range.step;
-      store(modes[0], modes.size() > 1 ? modes[1].score : 0.0F, std::clamp(w, stage.first, stage.last),
-            range.step, x, y, layer);
+      const float w = base(x, y) + range.first + mode.step * range.step;
+      store(mode, modes.second[pixel], std::clamp(w, stage.first, stage.last), range.step, x, y, layer);
     });
   });
   return layer;
@@ -291,12 +299,8 @@ std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& 
     for (DepthLayer& layer : layers) {
       if (!is_first)
         layer = doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
-      if (debug_hook) debug_hook(layer, level, "start");
       const int sweeps = is_first ? kFirstSweeps : level == 0 ? options.surface_sweeps : 2;
-      for (int sweep = 0; sweep < sweeps; ++sweep) {
-        layer = surfaceSweep(stage, layer, sweep == 0 ? (int)env("R0", 5) : (int)env("R1", 4));
-        if (debug_hook) debug_hook(layer, level, "swept");
-      }
+      for (int sweep = 0; sweep < sweeps; ++sweep) layer = surfaceSweep(stage, layer, sweep == 0 ? 5 : 4);
     }
   }
   return layers;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "stereo/plane_rows.h"
+#include "stereo/reciprocals-inl.h"
 #include "vdbfuse/base/parallel.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,16 +29,28 @@ struct Plane {
   FloatVec a, b, c;
 };
 
+// Sums along one row.
+struct RowMoments {
+  FloatVec w, x, xx, v, vx;
+
+  HWY_INLINE void add(FloatVec weight, FloatVec value, float dx) {
+    const FloatVec wv = hn::Mul(weight, value);
+    w = hn::Add(w, weight), v = hn::Add(v, wv);
+    x = hn::MulAdd(weight, set(dx), x), xx = hn::MulAdd(weight, set(dx * dx), xx);
+    vx = hn::MulAdd(wv, set(dx), vx);
+  }
+};
+
 // Sums of the normal equations.
 struct Moments {
   FloatVec w, x, y, xx, xy, yy, v, vx, vy;
   FloatVec all;  // weights before they are lessened
 
-  HWY_INLINE void add(FloatVec weight, FloatVec value, float dx, float dy) {
-    const FloatVec wx = hn::Mul(weight, set(dx)), wy = hn::Mul(weight, set(dy)), wv = hn::Mul(weight, value);
-    w = hn::Add(w, weight), x = hn::Add(x, wx), y = hn::Add(y, wy);
-    xx = hn::MulAdd(wx, set(dx), xx), xy = hn::MulAdd(wx, set(dy), xy), yy = hn::MulAdd(wy, set(dy), yy);
-    v = hn::Add(v, wv), vx = hn::MulAdd(wv, set(dx), vx), vy = hn::MulAdd(wv, set(dy), vy);
+  HWY_INLINE void add(const RowMoments& row, float dy) {
+    w = hn::Add(w, row.w), x = hn::Add(x, row.x), xx = hn::Add(xx, row.xx);
+    y = hn::MulAdd(row.w, set(dy), y), yy = hn::MulAdd(row.w, set(dy * dy), yy);
+    xy = hn::MulAdd(row.x, set(dy), xy);
+    v = hn::Add(v, row.v), vx = hn::Add(vx, row.vx), vy = hn::MulAdd(row.v, set(dy), vy);
   }
 
   HWY_INLINE Plane solve() const {
@@ -60,22 +73,23 @@ struct Moments {
 HWY_INLINE Moments gather(const PlaneRows& rows, std::size_t at, FloatVec middle, const Plane& plane,
                           float scale) {
   const Floats d;
-  const FloatVec zero = hn::Zero(d);
+  const FloatVec zero = hn::Zero(d), sharpness = set(1 / (scale * scale));
   Moments moments{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
-  const FloatVec sharpness = set(1 / (scale * scale));
   const int radius = rows.radius;
   for (int dy = -radius; dy <= radius; ++dy) {
+    const auto row = static_cast<std::ptrdiff_t>(at) + static_cast<std::ptrdiff_t>(dy) * rows.stride;
+    const FloatVec start = hn::MulAdd(plane.c, set(static_cast<float>(dy)), plane.a);
+    RowMoments sums{zero, zero, zero, zero, zero};
     for (int dx = -radius; dx <= radius; ++dx) {
-      const auto shift = static_cast<std::ptrdiff_t>(dy) * rows.stride + dx;
-      const FloatVec value = hn::Sub(hn::LoadU(d, rows.value + at + shift), middle);
-      const auto fx = static_cast<float>(dx), fy = static_cast<float>(dy);
-      const FloatVec expected = hn::MulAdd(plane.b, set(fx), hn::MulAdd(plane.c, set(fy), plane.a));
-      const FloatVec off = hn::Sub(value, expected);
-      const FloatVec far = hn::MulAdd(hn::Mul(off, off), sharpness, set(1.0F));
-      const FloatVec weight = hn::LoadU(d, rows.weight + at + shift);
+      const auto fx = static_cast<float>(dx);
+      const FloatVec value = hn::Sub(hn::LoadU(d, rows.value + row + dx), middle);
+      const FloatVec off = hn::Sub(value, hn::MulAdd(plane.b, set(fx), start));
+      const FloatVec near = reciprocal(d, hn::MulAdd(hn::Mul(off, off), sharpness, set(1.0F)));
+      const FloatVec weight = hn::LoadU(d, rows.weight + row + dx);
       moments.all = hn::Add(moments.all, weight);
-      moments.add(hn::Div(weight, hn::Mul(far, far)), value, fx, fy);
+      sums.add(hn::Mul(weight, hn::Mul(near, near)), value, fx);
     }
+    moments.add(sums, static_cast<float>(dy));
   }
   return moments;
 }

@@ -11,30 +11,39 @@ namespace {
 
 constexpr int kTileWidth = 128, kTileHeight = 48;
 
-struct Sums {
-  std::int64_t u = 0, uu = 0;
-  Sums& add(std::int64_t value, int sign) {
-    u += sign * value, uu += sign * value * value;
-    return *this;
-  }
+// Sums down the columns of the rows of a window. Whole numbers: exact for any window that fits a picture.
+struct ColumnSums {
+  std::vector<std::uint32_t> u, uu;
 };
 
+// Of the rows y − radius … y + radius.
+void sumColumns(const PictureLevel& picture, int radius, int y, ColumnSums& sums) {
+  const auto width = static_cast<std::size_t>(picture.camera.width);
+  sums.u.assign(width, 0), sums.uu.assign(width, 0);
+  for (int k = -radius; k <= radius; ++k) {
+    const std::uint16_t* row = picture.value.row(y + k);
+    for (std::size_t x = 0; x < width; ++x) {
+      const std::uint32_t value = row[x];
+      sums.u[x] += value, sums.uu[x] += value * value;
+    }
+  }
+}
+
 // Of the windows around the pixels of row y, by running sums along it.
-void windowRow(const PictureLevel& picture, int radius, float least_spread2, int y, ReferenceLevel& level) {
-  const int width = picture.camera.width, window = 2 * radius + 1;
-  const double share = 1.0 / (window * window);
-  Sums sums;
-  const auto addColumn = [&](int x, int sign) {
-    for (int k = -radius; k <= radius; ++k) sums.add(picture.value(x, y + k), sign);
-  };
-  for (int x = 0; x < window - 1; ++x) addColumn(x, 1);
-  for (int x = radius; x < width - radius; ++x) {
-    addColumn(x + radius, 1);
-    const double mean = static_cast<double>(sums.u) * share;
-    const double spread2 = static_cast<double>(sums.uu) - mean * static_cast<double>(sums.u);
-    level.mean(x, y) = static_cast<float>(mean);
-    if (spread2 >= least_spread2) level.inverse_spread(x, y) = static_cast<float>(1 / std::sqrt(spread2));
-    addColumn(x - radius, -1);
+void windowRow(const ColumnSums& sums, int radius, float least_spread2, int y, ReferenceLevel& level) {
+  const auto width = sums.u.size(), window = static_cast<std::size_t>(2 * radius + 1);
+  const double share = 1.0 / static_cast<double>(window * window);
+  std::uint64_t u = 0, uu = 0;
+  for (std::size_t x = 0; x < width; ++x) {
+    u += sums.u[x], uu += sums.uu[x];
+    if (x + 1 < window) continue;
+    const double mean = static_cast<double>(u) * share;
+    const double spread2 = static_cast<double>(uu) - mean * static_cast<double>(u);
+    const int centre = static_cast<int>(x) - radius;
+    level.mean(centre, y) = static_cast<float>(mean);
+    if (spread2 >= least_spread2)
+      level.inverse_spread(centre, y) = static_cast<float>(1 / std::sqrt(spread2));
+    u -= sums.u[x + 1 - window], uu -= sums.uu[x + 1 - window];
   }
 }
 
@@ -54,28 +63,44 @@ bool hasWindow(const ReferenceLevel& level, const TileRect& rect) {
 // u(x, y) | −u(x, y − window) << 16, as a whole number.
 std::int32_t packed(std::int32_t value, std::int32_t before) { return value - before * 65536; }
 
-template <class InverseDepth>
-void fillTile(const ReferenceLevel& level, const TileRect& rect, const InverseDepth& inverse_depth,
-              SweepTile& tile) {
-  const PictureLevel& picture = *level.picture;
-  const int radius = level.radius, width = picture.camera.width, height = picture.camera.height;
+// Calls use(x of the tile, column of the level) for a row with its margin; beyond the border the last pixel
+// is repeated.
+template <class Use>
+void forEachColumn(int first, int count, int width, const Use& use) {
+  const int left = std::min(count, std::max(0, -first)), right = std::clamp(width - first, left, count);
+  for (int x = 0; x < left; ++x) use(x, 0);
+  for (int x = left; x < right; ++x) use(x, first + x);
+  for (int x = right; x < count; ++x) use(x, width - 1);
+}
+
+// SweepTile::products of row y of the tile.
+void fillProducts(const PictureLevel& picture, int y, SweepTile& tile) {
+  const auto row = [&](int at) {
+    return picture.value.row(std::clamp(tile.y0 - tile.radius + at, 0, picture.camera.height - 1));
+  };
+  const std::uint16_t* value = row(y);
+  std::int32_t* products = tile.products.data() + tile.at(0, y);
+  const int first = tile.x0 - tile.radius, width = picture.camera.width;
+  if (y < tile.window()) {
+    forEachColumn(first, tile.stride, width, [&](int x, int column) { products[x] = value[column]; });
+    return;
+  }
+  const std::uint16_t* before = row(y - tile.window());
+  forEachColumn(first, tile.stride, width,
+                [&](int x, int column) { products[x] = packed(value[column], before[column]); });
+}
+
+// All but the base.
+void fillTile(const ReferenceLevel& level, const TileRect& rect, SweepTile& tile) {
+  const int radius = level.radius;
   tile.x0 = rect.x0, tile.y0 = rect.y0, tile.width = rect.width, tile.height = rect.height;
   tile.radius = radius;
   tile.stride = (rect.width + 2 * radius + kVectorLanes - 1) / kVectorLanes * kVectorLanes;
-  tile.products.assign(tile.at(0, rect.height + 2 * radius), 0);
+  tile.products.resize(tile.at(0, rect.height + 2 * radius));
   tile.base.resize(tile.products.size());
+  for (int y = 0; y < rect.height + 2 * radius; ++y) fillProducts(*level.picture, y, tile);
   tile.mean.assign(tile.at(0, rect.height), 0.0F);
   tile.inverse_spread.assign(tile.at(0, rect.height), 0.0F);
-  for (int y = 0; y < rect.height + 2 * radius; ++y) {
-    const int row = std::clamp(rect.y0 - radius + y, 0, height - 1);
-    const int before = std::clamp(rect.y0 - radius + y - tile.window(), 0, height - 1);
-    for (int x = 0; x < tile.stride; ++x) {
-      const int column = std::clamp(rect.x0 - radius + x, 0, width - 1);
-      const int old = y >= tile.window() ? picture.value(column, before) : 0;
-      tile.products[tile.at(x, y)] = packed(picture.value(column, row), old);
-      tile.base[tile.at(x, y)] = inverse_depth(column, row);
-    }
-  }
   for (int y = 0; y < rect.height; ++y) {
     std::copy_n(level.mean.row(rect.y0 + y) + rect.x0, rect.width, &tile.mean[tile.at(0, y)]);
     std::copy_n(level.inverse_spread.row(rect.y0 + y) + rect.x0, rect.width,
@@ -92,8 +117,11 @@ ReferenceLevel referenceLevel(const PictureLevel& picture, int radius, float lea
   const float deviation = least_deviation * static_cast<float>(kWhite);
   const float least_spread2 = deviation * deviation * static_cast<float>(window * window);
   parallelFor(static_cast<std::size_t>(height - 2 * radius), 32, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      windowRow(picture, radius, least_spread2, static_cast<int>(y) + radius, level);
+    ColumnSums sums;
+    for (std::size_t y = begin; y < end; ++y) {
+      sumColumns(picture, radius, static_cast<int>(y) + radius, sums);
+      windowRow(sums, radius, least_spread2, static_cast<int>(y) + radius, level);
+    }
   });
   if (!picture.mask.empty()) leaveOutMasked(picture.mask, level.inverse_spread);
   return level;
@@ -113,13 +141,19 @@ std::vector<TileRect> tilesOf(const ReferenceLevel& level) {
 
 void prepareTile(const ReferenceLevel& level, const TileRect& rect, const Image<float>& inverse_depth,
                  SweepTile& tile) {
-  fillTile(
-      level, rect, [&](int x, int y) { return inverse_depth(x, y); }, tile);
+  fillTile(level, rect, tile);
+  for (int y = 0; y < rect.height + 2 * level.radius; ++y) {
+    const float* row =
+        inverse_depth.row(std::clamp(rect.y0 - level.radius + y, 0, inverse_depth.height() - 1));
+    float* base = tile.base.data() + tile.at(0, y);
+    forEachColumn(rect.x0 - level.radius, tile.stride, inverse_depth.width(),
+                  [&](int x, int column) { base[x] = row[column]; });
+  }
 }
 
 void prepareTile(const ReferenceLevel& level, const TileRect& rect, float inverse_depth, SweepTile& tile) {
-  fillTile(
-      level, rect, [&](int, int) { return inverse_depth; }, tile);
+  fillTile(level, rect, tile);
+  std::fill(tile.base.begin(), tile.base.end(), inverse_depth);
 }
 
 }  // namespace vdbfuse::stereo

@@ -8,6 +8,7 @@
 #include "stereo/cross_view.h"
 #include "stereo/match_view.h"
 #include "stereo/matching_constants.h"
+#include "stereo/other_voters.h"
 #include "stereo/paper.h"
 #include "stereo/pyramid_store.h"
 #include "vdbfuse/base/errors.h"
@@ -128,15 +129,15 @@ class FastStereo {
     match();
     if (options_.cross_check == StereoOptions::CrossCheck::On && options_.surface_sweeps > 0) {
       timer.start("cross-check");
-      static const int kRounds = getenv("R") ? atoi(getenv("R")) : 2;
-      for (int round = 0; round < kRounds; ++round) crossCheck(getenv("CP") ? getenv("CP")[round] - 48 : 4);
+      // Ever nearer: what other views say has brought the surface close.
+      for (const int reach : {4, 3, 2}) crossCheck(reach);
     }
     timer.start("write");
     StereoResult result;
     for (std::size_t i = 0; i < plan_.headers.size(); ++i) {
       StereoView view = emptyView(plan_, i, photographs_.load(i));
       const auto full = static_cast<float>(plan_.partners[i].size()) +
-                        (others_.empty() ? 0.0F : 0.5F * static_cast<float>(others_[i].size()));
+                        (others_.empty() ? 0.0F : kOtherViewsWeight * static_cast<float>(others_[i].size()));
       storeDepths(layers_[i], full, pixels_[i], options_.min_confidence, view);
       result.views.push_back(std::move(view));
     }

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
+#include "stereo/bit_rows.h"
 #include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse::stereo {
@@ -57,6 +58,43 @@ void fillFrom(const Image<float>& half, Image<float>& full) {
   });
 }
 
+constexpr std::array<std::array<int, 2>, 8> kDirections = {
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+
+// The plane at (x, y) of the best pixel `distance` away in the directions where there is a usable one.
+float bestPlane(const DepthLayer& layer, const PlaneMap& planes, int x, int y, int distance,
+                const std::array<std::uint64_t, 8>& usable) {
+  float best = 0, inverse_depth = 0;
+  for (std::size_t k = 0; k < kDirections.size(); ++k) {
+    if ((usable[k] >> (x % BitRows::kBits) & 1) == 0) continue;
+    const int dx = distance * kDirections[k][0], dy = distance * kDirections[k][1];
+    if (layer.score(x + dx, y + dy) <= best) continue;
+    best = layer.score(x + dx, y + dy);
+    inverse_depth = planes.value(x + dx, y + dy) - static_cast<float>(dx) * planes.dx(x + dx, y + dy) -
+                    static_cast<float>(dy) * planes.dy(x + dx, y + dy);
+  }
+  return inverse_depth;
+}
+
+// For the pixels of a word whose bits are in `open`.
+void takeNearest(const DepthLayer& layer, const PlaneMap& planes, const BitRows& usable, int word, int y,
+                 std::uint64_t open, Image<float>& inverse_depth) {
+  constexpr int kFurthest = 12;
+  for (int distance = 1; distance <= kFurthest && open != 0; ++distance) {
+    std::array<std::uint64_t, 8> there{};
+    std::uint64_t any = 0;
+    for (std::size_t k = 0; k < kDirections.size(); ++k) {
+      there[k] = usable.moved(word, y + distance * kDirections[k][1], distance * kDirections[k][0]);
+      any |= there[k];
+    }
+    for (std::uint64_t found = open & any; found != 0; found &= found - 1) {
+      const int x = word * BitRows::kBits + std::countr_zero(found);
+      inverse_depth(x, y) = bestPlane(layer, planes, x, y, distance, there);
+    }
+    open &= ~any;
+  }
+}
+
 }  // namespace
 
 DepthLayer emptyLayer(int width, int height) {
@@ -75,29 +113,21 @@ Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
 }
 
 Guide guideOf(const DepthLayer& layer, const PlaneMap& planes) {
-  static const float kLeastShare = getenv("LS") ? strtof(getenv("LS"), nullptr) : 0.2F;
-  constexpr int kFurthest = 12;
-  constexpr std::array<std::array<int, 2>, 8> kDirections = {
-      {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
-  Guide guide{planes.value, {planes.value.width(), planes.value.height()}};
+  constexpr float kLeastShare = 0.2F;
+  const int width = planes.value.width(), height = planes.value.height();
+  Guide guide{planes.value, {width, height}};
   const auto is_agreed = [&](int x, int y) { return planes.share(x, y) >= kLeastShare; };
-  forEachRow(planes.value.height(), [&](int y) {
-    for (int x = 0; x < planes.value.width(); ++x) {
-      if (is_agreed(x, y)) continue;
-      float best = 0;
-      guide.is_foreign(x, y) = 1;
-      guide.inverse_depth(x, y) = 0;
-      for (int distance = 1; distance <= kFurthest && best == 0; ++distance) {
-        for (const auto& [ux, uy] : kDirections) {
-          const int from_x = x + distance * ux, from_y = y + distance * uy;
-          if (!planes.value.contains(from_x, from_y) || !is_agreed(from_x, from_y)) continue;
-          if (layer.score(from_x, from_y) <= best) continue;
-          best = layer.score(from_x, from_y);
-          guide.inverse_depth(x, y) = planes.value(from_x, from_y) -
-                                      static_cast<float>(distance * ux) * planes.dx(from_x, from_y) -
-                                      static_cast<float>(distance * uy) * planes.dy(from_x, from_y);
-        }
+  const BitRows usable(width, height, [&](int x, int y) { return is_agreed(x, y) && layer.score(x, y) > 0; });
+  forEachRow(height, [&](int y) {
+    for (int word = 0; word < BitRows::words(width); ++word) {
+      std::uint64_t open = 0;
+      for (int x = word * BitRows::kBits; x < std::min(width, (word + 1) * BitRows::kBits); ++x) {
+        if (is_agreed(x, y)) continue;
+        guide.is_foreign(x, y) = 1;
+        guide.inverse_depth(x, y) = 0;
+        open |= std::uint64_t{1} << (x % BitRows::kBits);
       }
+      if (open != 0) takeNearest(layer, planes, usable, word, y, open, guide.inverse_depth);
     }
   });
   return guide;

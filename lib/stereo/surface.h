@@ -12,7 +12,7 @@ struct DepthLayer {
   Image<float> inverse_depth;  ///< 0: nothing was found
   Image<float> score;          ///< Mode::score
   Image<float> support;        ///< Mode::support
-  Image<float> second;         ///< score of the next best mode
+  Image<float> second;         ///< C of the best peak well apart from this one: of partners and other views
   Image<std::uint8_t> voters;
   Image<float> spread2;  ///< Mode::spread2, as inverse depth
 };

@@ -20,38 +20,39 @@ std::vector<float> gaussianTable() {
   return table;
 }
 
-// Calls use(peak, weighted score) for the best peak of every partner.
-template <class Weight, class Use>
-void forEachVoter(const std::vector<Peak>& peaks, const Weight& weight, const Use& use) {
-  for (std::size_t i = 0; i < peaks.size();) {
-    const std::int32_t partner = peaks[i].partner;
+}  // namespace
+
+// Calls use(peak, weighted score) for the best peak of every partner. Most peaks are far from `step`.
+template <class Use>
+inline void Voting::forEachVoter(const std::vector<Peak>& peaks, float step, const Use& use) const {
+  const Peak *peak = peaks.data(), *end = peak + peaks.size();
+  while (peak != end) {
+    const std::int32_t partner = peak->partner;
     const Peak* best = nullptr;
     float best_score = 0;
-    for (; i < peaks.size() && peaks[i].partner == partner; ++i) {
-      const float score = peaks[i].score * weight(peaks[i].step);
-      if (score > best_score) best = &peaks[i], best_score = score;
+    for (; peak != end && peak->partner == partner; ++peak) {
+      const float distance = std::abs(peak->step - step);
+      if (!(distance < reach_)) continue;
+      const float score = peak->score * weight(distance);
+      if (score > best_score) best = peak, best_score = score;
     }
     if (best != nullptr) use(*best, best_score);
   }
 }
 
-}  // namespace
-
 Voting::Voting(float sigma, std::size_t most_modes)
-    : sigma_(sigma), most_modes_(most_modes), table_(gaussianTable()) {}
+    : sigma_(sigma), reach_(kReach * sigma), most_modes_(most_modes), table_(gaussianTable()) {}
 
-float Voting::weight(float distance) const {
-  const float place = std::abs(distance) / sigma_;
-  if (!(place < kReach)) return 0;
-  const float scaled = place * kTableSteps;
-  const auto at = static_cast<std::size_t>(scaled);
-  return table_[at] + (scaled - static_cast<float>(at)) * (table_[at + 1] - table_[at]);
+inline float Voting::weight(float distance) const {
+  const float scaled = distance / sigma_ * kTableSteps;
+  const auto below = static_cast<std::int32_t>(scaled);
+  const float* at = table_.data() + below;
+  return at[0] + (scaled - static_cast<float>(below)) * (at[1] - at[0]);
 }
 
 float Voting::scoreAt(const std::vector<Peak>& peaks, float step) const {
   float sum = 0;
-  forEachVoter(
-      peaks, [&](float k) { return weight(k - step); }, [&](const Peak&, float score) { sum += score; });
+  forEachVoter(peaks, step, [&](const Peak&, float score) { sum += score; });
   return sum;
 }
 
@@ -59,25 +60,21 @@ Mode Voting::shifted(const std::vector<Peak>& peaks, float step) const {
   Mode mode;
   for (int i = 0; i < kShifts; ++i) {
     float sum = 0, place = 0;
-    forEachVoter(
-        peaks, [&](float k) { return weight(k - step); },
-        [&](const Peak& peak, float score) {
-          sum += score * peak.curvature;
-          place += score * peak.curvature * peak.step;
-        });
+    forEachVoter(peaks, step, [&](const Peak& peak, float score) {
+      sum += score * peak.curvature;
+      place += score * peak.curvature * peak.step;
+    });
     if (sum > 0) step = place / sum;
   }
   float spread2 = 0, weights = 0;
-  forEachVoter(
-      peaks, [&](float k) { return weight(k - step); },
-      [&](const Peak& peak, float score) {
-        const bool is_partner = peak.partner < kOtherViews;
-        (is_partner ? mode.score : mode.support) += score;
-        const float distance = peak.step - step;
-        if (!is_partner || std::abs(distance) > 2 * sigma_) return;
-        ++mode.voters;
-        spread2 += score * distance * distance, weights += score;
-      });
+  forEachVoter(peaks, step, [&](const Peak& peak, float score) {
+    const bool is_partner = peak.partner < kOtherViews;
+    (is_partner ? mode.score : mode.support) += score;
+    const float distance = peak.step - step;
+    if (!is_partner || std::abs(distance) > 2 * sigma_) return;
+    ++mode.voters;
+    spread2 += score * distance * distance, weights += score;
+  });
   mode.step = step;
   mode.spread2 = weights > 0 ? spread2 / weights : 0;
   return mode;

@@ -36,11 +36,14 @@ class Voting {
   const Modes& count(const std::vector<Peak>& peaks);
 
  private:
+  template <class Use>
+  void forEachVoter(const std::vector<Peak>& peaks, float step, const Use& use) const;
+  /// W of a distance below four sigma.
   float weight(float distance) const;
   float scoreAt(const std::vector<Peak>& peaks, float step) const;
   Mode shifted(const std::vector<Peak>& peaks, float step) const;
 
-  float sigma_;
+  float sigma_, reach_;
   std::size_t most_modes_;
   std::vector<float> table_;
   Modes modes_;
