@@ -75,6 +75,7 @@ Stage stageOf(const MatchInput& input, int level, const StereoOptions& options, 
   Stage stage;
   stage.reference = referenceLevel((*input.reference.levels)[at], options.window_px / 2,
                                    static_cast<float>(kLeastDeviation));
+  if (options.surface_sweeps > 0) leaveOutRims(stage.reference);
   if (options.domain)
     leaveOutBeside(*options.domain, (*input.reference.levels)[at].camera, input.reference.world_from_camera,
                    stage.reference.inverse_spread);
@@ -231,7 +232,10 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
   const PlaneMap planes = planesOf(stage, before);
   const Guide guide = guideOf(before, planes);
   DepthLayer layer = before;
-  for (float& score : layer.score) score *= 0.5F;
+  for (std::size_t i = 0; i < layer.score.size(); ++i) {
+    layer.score.data()[i] *= 0.5F;
+    if (stage.reference.inverse_spread.data()[i] == 0) layer.inverse_depth.data()[i] = 0;
+  }
   const Image<float> base = filled(guide.inverse_depth, 0.5F * (stage.first + stage.last));
   forEachTile(stage.reference, [&](const TileRect& rect) {
     SweepTile tile;

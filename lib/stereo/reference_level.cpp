@@ -47,6 +47,19 @@ void windowRow(const ColumnSums& sums, int radius, float least_spread2, int y, R
   }
 }
 
+// Σ(u − mean)² of the nine pixels around.
+double innerSpread2(const PictureLevel& picture, int x, int y) {
+  std::uint32_t u = 0, uu = 0;
+  for (int dy = -1; dy <= 1; ++dy) {
+    const std::uint16_t* row = picture.value.row(y + dy) + x;
+    for (int dx = -1; dx <= 1; ++dx) {
+      const std::uint32_t value = row[dx];
+      u += value, uu += value * value;
+    }
+  }
+  return static_cast<double>(uu) - static_cast<double>(u) * static_cast<double>(u) / 9;
+}
+
 void leaveOutMasked(const Image<std::uint8_t>& mask, Image<float>& inverse_spread) {
   std::transform(mask.begin(), mask.end(), inverse_spread.begin(), inverse_spread.begin(),
                  [](std::uint8_t used, float spread) { return used ? spread : 0.0F; });
@@ -125,6 +138,24 @@ ReferenceLevel referenceLevel(const PictureLevel& picture, int radius, float lea
   });
   if (!picture.mask.empty()) leaveOutMasked(picture.mask, level.inverse_spread);
   return level;
+}
+
+void leaveOutRims(ReferenceLevel& level) {
+  constexpr double kLeastShare = 0.02;
+  const PictureLevel& picture = *level.picture;
+  const int radius = level.radius;
+  const double area = (2.0 * radius + 1) * (2.0 * radius + 1);
+  parallelFor(static_cast<std::size_t>(picture.camera.height), 32, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row);
+      for (int x = radius; x < picture.camera.width - radius; ++x) {
+        float& inverse_spread = level.inverse_spread(x, y);
+        if (inverse_spread == 0) continue;
+        const auto inverse = static_cast<double>(inverse_spread);
+        if (innerSpread2(picture, x, y) / 9 < kLeastShare / (inverse * inverse * area)) inverse_spread = 0;
+      }
+    }
+  });
 }
 
 std::vector<TileRect> tilesOf(const ReferenceLevel& level) {

@@ -20,6 +20,10 @@ struct ReferenceLevel {
 /// `least_deviation`: of the brightness in a window, in [0, 1]; below it there is no texture.
 ReferenceLevel referenceLevel(const PictureLevel& picture, int radius, float least_deviation);
 
+/// Takes away the windows whose texture lies on their rim: less than a fiftieth of their variance is left in
+/// the nine pixels of the middle, and what they see belongs to a surface that the pixel lies beside.
+void leaveOutRims(ReferenceLevel& level);
+
 struct TileRect {
   int x0 = 0, y0 = 0, width = 0, height = 0;
 };
