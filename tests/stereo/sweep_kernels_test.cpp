@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "stereo/each_target.h"
 #include "stereo/reference_level.h"
 
 namespace vdbfuse::stereo {
@@ -123,6 +124,24 @@ TEST(SweepKernels, WindowsThatAreLeftOutDoNotChangeTheOthers) {
       ASSERT_EQ(best.score[pixel], score) << round << ' ' << pixel;
     }
   }
+}
+
+// Away from the border, where rounding says what lies in the picture; of two samples it may make equals.
+TEST(SweepKernels, AllInstructionSetsFindTheSame) {
+  const Pair pair;
+  const SweepTile tile = pair.tile({24, 8, 96, 48});
+  const BestPeaks expected = pair.best(tile);
+  test::forEachTarget([&] {
+    const BestPeaks best = pair.best(tile);
+    std::size_t different = 0;
+    for (std::size_t pixel = 0; pixel < best.score.size(); ++pixel) {
+      const bool is_same =
+          std::abs(best.score[pixel] - expected.score[pixel]) < 1e-3F &&
+          (best.score[pixel] == kNoPeak || std::abs(best.step[pixel] - expected.step[pixel]) < 1e-2F);
+      different += !is_same;
+    }
+    EXPECT_LT(different, 6U);
+  });
 }
 
 }  // namespace
