@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 
@@ -295,9 +296,13 @@ class ListSink {
     alignas(64) float step[kVectorLanes], score[kVectorLanes], curvature[kVectorLanes];
     hn::Store(top.step, d, step);
     hn::Store(top.curvature, d, curvature);
-    hn::Store(hn::IfThenElse(is_peak, at, set(kNoPeak)), d, score);
-    for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane)
-      if (score[lane] != kNoPeak) push(i + lane, {step[lane], score[lane], curvature[lane], index_});
+    hn::Store(at, d, score);
+    std::uint8_t bytes[8] = {};  // all that StoreMaskBits may write
+    hn::StoreMaskBits(d, is_peak, bytes);
+    for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
+      push(i + lane, {step[lane], score[lane], curvature[lane], index_});
+    }
   }
 
  private:

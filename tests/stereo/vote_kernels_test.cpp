@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "stereo/each_target.h"
 #include "stereo/votes.h"
 
 namespace vdbfuse::stereo {
@@ -62,9 +63,7 @@ float countAt(const std::vector<Peak>& peaks, float step) {
   return sum;
 }
 
-TEST(VoteKernels, AgreeWithTheVotesOfOnePixel) {
-  const std::vector<Rows> voters = randomVoters(1);
-  const ModeRows modes = counted(voters);
+void expectThoseOfOnePixel(const ModeRows& modes, const std::vector<Rows>& voters) {
   Voting voting(kSigma, 1);
   std::size_t ties = 0;
   for (std::size_t i = 0; i < kPixels; ++i) {
@@ -78,6 +77,11 @@ TEST(VoteKernels, AgreeWithTheVotesOfOnePixel) {
     EXPECT_EQ(modes.voters[i], expected[0].voters);
     EXPECT_NEAR(modes.spread2[i], expected[0].spread2, 4e-3F);
   }
+}
+
+TEST(VoteKernels, AgreeWithTheVotesOfOnePixel) {
+  const std::vector<Rows> voters = randomVoters(1);
+  test::forEachTarget([&] { expectThoseOfOnePixel(counted(voters), voters); });
 }
 
 TEST(VoteKernels, TheSecondBestIsTheBestPeakWellApart) {
