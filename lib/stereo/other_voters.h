@@ -10,7 +10,7 @@
 namespace vdbfuse::stereo {
 
 inline constexpr float kOtherViewsWeight = 1.0F;     ///< of another view's depth, beside a partner's peak
-inline constexpr float kOtherViewsCurvature = 0.6F;  ///< how well it knows its place
+inline constexpr float kOtherViewsCurvature = 1.0F;  ///< how well it knows its place
 
 /// Rows of one view after the other, each as long as those of the tile without margin.
 struct OtherVoters {

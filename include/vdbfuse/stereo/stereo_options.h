@@ -18,7 +18,8 @@ struct StereoOptions {
   };
   Mode mode = Mode::Fast;
   PartnerOptions partners;
-  int window_px = 7;  ///< side of the square that is correlated; odd. Larger: fewer mistakes, rounder edges
+  /// Side of the square that is correlated; odd. Larger: fewer mistakes in noise, rounder edges.
+  int window_px = 5;
   /// Depths are looked for within it.
   std::optional<Box> domain;
   /// Depths z that are looked for, in place of what the data say. 0: from the data.
