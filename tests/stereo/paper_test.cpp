@@ -38,8 +38,8 @@ Scene sceneOf(const Rectangles& rectangles, const std::array<double, kCameras>& 
   Scene scene;
   const std::vector<PhotographHeader> cameras = test::camerasOnArc(kCameras, 10);
   for (std::size_t i = 0; i < kCameras; ++i) {
-    Photograph photograph = photographOfRectangles(rectangles, cameras[i], gains[i], biases[i]);
-    Image<float> truth = depthOfRectangles(rectangles, cameras[i]);
+    Photograph photograph = photographOf(rectangles, cameras[i], gains[i], biases[i]);
+    Image<float> truth = trueDepthOf(rectangles, cameras[i]);
     if (i == kReference) {
       scene.reference = std::move(photograph), scene.truth = std::move(truth);
     } else {
