@@ -65,7 +65,7 @@ StereoOptions sweepsOfPlanes() {
 
 // Inverse depth by which the picture moves by one pixel in the widest partner, where it moves most.
 double inverseDepthOfPixel(const Set& set, const StereoView& view, std::size_t index) {
-  std::vector<Photograph> partners;
+  std::vector<PhotographHeader> partners;
   for (const std::size_t partner : view.partners) partners.push_back(set.photographs[partner]);
   const auto steps = stereo::paper::raySteps(set.photographs[index], partners, view.depths, 1);
   return steps.step;

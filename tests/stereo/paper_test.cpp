@@ -30,7 +30,9 @@ struct Scene {
   std::vector<Photograph> partners;
   Image<float> truth;
   std::vector<Image<float>> partner_truths;
-  paper::RaySteps steps() const { return paper::raySteps(reference, partners, kDepths, kPaperStep); }
+  paper::RaySteps steps() const {
+    return paper::raySteps(reference, {partners.begin(), partners.end()}, kDepths, kPaperStep);
+  }
 };
 
 Scene sceneOf(const Rectangles& rectangles, const std::array<double, kCameras>& gains = {1, 1, 1, 1, 1},
