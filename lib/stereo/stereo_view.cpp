@@ -29,6 +29,18 @@ double matchingError(const DepthLayer& layer, float inverse_depth_of_pixel) {
   return static_cast<double>(*middle / inverse_depth_of_pixel);
 }
 
+// A little beyond the box: it is where one looks, not where the surface ends to the last digit.
+void leaveOutBeyond(const Box& box, View& view) {
+  const double slack = 0.01 * box.diagonal().norm();
+  const Box wanted(box.min().array() - slack, box.max().array() + slack);
+  for (int y = 0; y < view.map.depth.height(); ++y) {
+    for (int x = 0; x < view.map.depth.width(); ++x) {
+      float& depth = view.map.depth(x, y);
+      if (depth > 0 && !wanted.contains(worldPoint(view, x, y))) depth = kInvalidDepth;
+    }
+  }
+}
+
 // What else a pixel may have seen, the best first: no two nearer to each other than three sigma of a vote.
 std::vector<std::pair<float, float>> otherDepths(const ViewMatch& match, std::size_t i, std::size_t most,
                                                  float apart) {
@@ -84,15 +96,17 @@ void storeDepths(const ViewMatch& match, float full_score, float pixel, const St
   const int width = best.score.width(), height = best.score.height();
   map.depth = map.confidence = view.second_best = Image<float>(width, height);
   view.voters = best.voters;
+  std::transform(best.inverse_depth.begin(), best.inverse_depth.end(), map.depth.begin(),
+                 [](float w) { return w > 0 ? 1 / w : kInvalidDepth; });
+  if (options.domain) leaveOutBeyond(*options.domain, view.view);
   for (std::size_t i = 0; i < best.score.size(); ++i) {
-    const float w = best.inverse_depth.data()[i];
     const float confidence =
         std::clamp((best.score.data()[i] + best.support.data()[i]) / full_score, 0.0F, 1.0F);
-    if (!(w > 0) || static_cast<double>(confidence) < options.min_confidence) {
+    if (static_cast<double>(confidence) < options.min_confidence) map.depth.data()[i] = kInvalidDepth;
+    if (map.depth.data()[i] == kInvalidDepth) {
       view.voters.data()[i] = 0;
       continue;
     }
-    map.depth.data()[i] = 1 / w;
     map.confidence.data()[i] = confidence;
     view.second_best.data()[i] = std::min(confidence, best.second.data()[i] / full_score);
   }
