@@ -3,40 +3,28 @@
 // then along the surface that was found, on finer and finer levels.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "stereo/cross_view.h"
-#include "stereo/picture_pyramid.h"
+#include "stereo/match_stage.h"
 #include "stereo/surface.h"
-#include "vdbfuse/geometry/rigid_transform.h"
-#include "vdbfuse/stereo/stereo_options.h"
 
 namespace vdbfuse::stereo {
-
-struct PosedPyramid {
-  std::shared_ptr<const std::vector<PictureLevel>> levels;
-  RigidTransform world_from_camera = RigidTransform::Identity();
-};
-
-struct MatchInput {
-  PosedPyramid reference;
-  std::vector<PosedPyramid> partners;
-  DepthInterval depths;
-};
 
 /// Levels of the pyramid that matchView() needs for pictures of this size.
 int levelsFor(int width, int height, const StereoOptions& options);
 
-/// Inverse depth by which the picture moves by one pixel of level `level` in the widest partner, in the
-/// middle of the picture and of its depths.
-float inverseDepthOfPixel(const MatchInput& input, int level);
+/// Of level 0.
+struct ViewMatch {
+  DepthLayer best;
+  /// What else the first sweep found, where StereoOptions::hypotheses are more than one: its modes, the best
+  /// first (which may be the depth that `best` came from), as exact as that sweep.
+  std::vector<DepthLayer> modes;
+};
+ViewMatch matchView(const MatchInput& input, const StereoOptions& options);
 
-/// Of level 0, one for each of StereoOptions::hypotheses, the best first.
-std::vector<DepthLayer> matchView(const MatchInput& input, const StereoOptions& options);
-
-/// Weighs the depths against what other views say of them, and sweeps once more along the result. What is not
-/// found keeps its value and half its score.
+/// Weighs the depths against what other views say of them, and sweeps once more along the result, ± `reach`
+/// steps.
 DepthLayer crossChecked(const MatchInput& input, const StereoOptions& options, const DepthLayer& own,
                         const std::vector<Testimony>& others, int reach);
 

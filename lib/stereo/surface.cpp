@@ -102,6 +102,15 @@ DepthLayer emptyLayer(int width, int height) {
   return {zero, zero, zero, zero, Image<std::uint8_t>(width, height), zero};
 }
 
+void store(const Mode& mode, float second, float inverse_depth, float step, int x, int y, DepthLayer& layer) {
+  layer.inverse_depth(x, y) = inverse_depth;
+  layer.score(x, y) = mode.score;
+  layer.support(x, y) = mode.support;
+  layer.second(x, y) = second;
+  layer.voters(x, y) = mode.voters;
+  layer.spread2(x, y) = mode.spread2 * step * step;
+}
+
 Image<float> filled(const Image<float>& inverse_depth, float otherwise) {
   std::vector<Image<float>> pyramid{inverse_depth};
   while (pyramid.back().width() > 1 || pyramid.back().height() > 1)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "stereo/plane_fit.h"
+#include "stereo/votes.h"
 #include "vdbfuse/geometry/image.h"
 
 namespace vdbfuse::stereo {
@@ -17,6 +18,9 @@ struct DepthLayer {
   Image<float> spread2;  ///< Mode::spread2, as inverse depth
 };
 DepthLayer emptyLayer(int width, int height);
+
+/// Sets all of a pixel. `step`: inverse depth of a step of the mode.
+void store(const Mode& mode, float second, float inverse_depth, float step, int x, int y, DepthLayer& layer);
 
 /// Pixels without a value get the mean of those around, nearest first (pull and push over a pyramid). Where
 /// there is none at all: `otherwise`.
