@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stereo/matching_constants.h"
-#include "stereo/votes.h"
-
 namespace vdbfuse::stereo {
 namespace {
 
@@ -23,18 +20,17 @@ void collect(const PeakLists& lists, std::size_t pixel, std::vector<Peak>& peaks
 }
 
 // All inverse depths; a step more on each side, because ends are no peaks.
-SweepRange fullRange(const Stage& stage, float step_px) {
-  const float step = step_px * stage.pixel;
+SweepRange fullRange(const Stage& stage, float step) {
   const int count = std::max(1, static_cast<int>(std::ceil((stage.last - stage.first) / step))) + 3;
   return {-step, step, count};
 }
 
 }  // namespace
 
-std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypotheses) {
+std::vector<DepthLayer> planeSweep(const Stage& stage, const PlaneSweepOptions& options) {
   const int width = stage.reference.mean.width(), height = stage.reference.mean.height();
-  std::vector<DepthLayer> layers(static_cast<std::size_t>(hypotheses), emptyLayer(width, height));
-  const SweepRange range = fullRange(stage, step_px);
+  std::vector<DepthLayer> layers(static_cast<std::size_t>(options.hypotheses), emptyLayer(width, height));
+  const SweepRange range = fullRange(stage, options.step);
   forEachTile(stage.reference, [&](const TileRect& rect) {
     SweepTile tile;
     SweepMemory memory;
@@ -46,7 +42,7 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, float step_px, int hypoth
     for (std::size_t j = 0; j < stage.pictures.size(); ++j)
       sweepForAll(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, static_cast<int>(j),
                   memory, lists);
-    Voting voting(static_cast<float>(kVoteSigma) * kExactStep / step_px, layers.size() + 1);
+    Voting voting(options.sigma, layers.size() + 1, options.votes);
     std::vector<Peak> peaks;
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
       collect(lists, pixel, peaks);

@@ -22,7 +22,7 @@ std::vector<float> gaussianTable() {
 
 }  // namespace
 
-// Calls use(peak, weighted score) for the best peak of every partner. Most peaks are far from `step`.
+// Calls use(peak, weighted score) for what votes near `step`. Most peaks are far from it.
 template <class Use>
 inline void Voting::forEachVoter(const std::vector<Peak>& peaks, float step, const Use& use) const {
   const Peak *peak = peaks.data(), *end = peak + peaks.size();
@@ -34,14 +34,21 @@ inline void Voting::forEachVoter(const std::vector<Peak>& peaks, float step, con
       const float distance = std::abs(peak->step - step);
       if (!(distance < reach_)) continue;
       const float score = peak->score * weight(distance);
-      if (score > best_score) best = peak, best_score = score;
+      if (votes_ == PartnerVotes::All)
+        use(*peak, score);
+      else if (score > best_score)
+        best = peak, best_score = score;
     }
     if (best != nullptr) use(*best, best_score);
   }
 }
 
-Voting::Voting(float sigma, std::size_t most_modes)
-    : sigma_(sigma), reach_(kReach * sigma), most_modes_(most_modes), table_(gaussianTable()) {}
+Voting::Voting(float sigma, std::size_t most_modes, PartnerVotes votes)
+    : sigma_(sigma),
+      reach_(kReach * sigma),
+      most_modes_(most_modes),
+      votes_(votes),
+      table_(gaussianTable()) {}
 
 inline float Voting::weight(float distance) const {
   const float scaled = distance / sigma_ * kTableSteps;
@@ -67,12 +74,14 @@ Mode Voting::shifted(const std::vector<Peak>& peaks, float step) const {
     if (sum > 0) step = place / sum;
   }
   float spread2 = 0, weights = 0;
+  std::int32_t last_voter = -1;
   forEachVoter(peaks, step, [&](const Peak& peak, float score) {
     const bool is_partner = peak.partner < kOtherViews;
     (is_partner ? mode.score : mode.support) += score;
     const float distance = peak.step - step;
     if (!is_partner || std::abs(distance) > 2 * sigma_) return;
-    ++mode.voters;
+    if (peak.partner != last_voter) ++mode.voters;
+    last_voter = peak.partner;
     spread2 += score * distance * distance, weights += score;
   });
   mode.step = step;

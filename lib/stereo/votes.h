@@ -11,11 +11,16 @@
 
 namespace vdbfuse::stereo {
 
-/// A mode of C(k) = Σ_j max_i S_ji W(k − k_ji): every partner votes once, with its best peak
-/// near k.
+/// How many of its peaks a partner votes with.
+enum class PartnerVotes {
+  Best,  ///< the best one near k: C(k) = Σ_j max_i S_ji W(k − k_ji)
+  All,   ///< the paper's: C(k) = Σ_j Σ_i S_ji W(k − k_ji)
+};
+
+/// A mode of C(k).
 struct Mode {
   float step = 0;           ///< k, by mean shift
-  float score = 0;          ///< C(k) of the partners; at most their number
+  float score = 0;          ///< C(k) of the partners; at most their number where each votes once
   float support = 0;        ///< C(k) of other views' depths (Peak::partner from kOtherViews on)
   std::uint8_t voters = 0;  ///< partners with a peak within two sigma
   float spread2 = 0;        ///< mean square distance of their peaks from k, in steps
@@ -30,7 +35,7 @@ using Modes = std::vector<Mode>;
 class Voting {
  public:
   /// `sigma`: of W, in steps.
-  Voting(float sigma, std::size_t most_modes);
+  Voting(float sigma, std::size_t most_modes, PartnerVotes votes = PartnerVotes::Best);
 
   /// REQUIRES: peaks ordered by partner. The result lives until the next call.
   const Modes& count(const std::vector<Peak>& peaks);
@@ -45,6 +50,7 @@ class Voting {
 
   float sigma_, reach_;
   std::size_t most_modes_;
+  PartnerVotes votes_;
   std::vector<float> table_;
   Modes modes_;
   std::vector<std::pair<float, float>> candidates_;
