@@ -64,7 +64,7 @@ run_tests release build
 
 if [ "$all" = no ]; then
   # What does arithmetic of indices, and what reads files of others.
-  modules=(base geometry sensor mincut mesh octree io formats)
+  modules=(base geometry sensor mincut mesh octree io stereo formats)
   wanted=$(IFS=';'; echo "${modules[*]}")
   build "Sanitizers on the cheap modules" build-asan asan -DVDBFUSE_WITH_PCL=OFF -DVDBFUSE_MODULES="volume;$wanted"
   targets=()
