@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kReach = 4.0F;   // of W, in sigma; beyond it is below 4e-4
 constexpr int kTableSteps = 64;  // a sigma
-constexpr int kShifts = 60;
+constexpr int kShifts = 4;
 
 std::vector<float> gaussianTable() {
   std::vector<float> table;

@@ -56,7 +56,7 @@ std::vector<PhotographHeader> smallCameras() {
   std::vector<PhotographHeader> headers = cameras();
   for (PhotographHeader& header : headers) {
     Pinhole& camera = header.camera;
-    camera.cx -= 20, camera.cy -= 14, camera.width = 56, camera.height = 44;
+    camera.cx -= 23, camera.cy -= 17, camera.width = 50, camera.height = 38;
   }
   return headers;
 }

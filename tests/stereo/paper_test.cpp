@@ -243,9 +243,10 @@ TEST(Paper, WindowsOutsideTheMasksDoNotVote) {
 }
 
 TEST(Paper, WhatHasNoTextureHasNoDepth) {
-  Scene scene = sceneOf(kFrontal, {1, 1, 0.002, 1, 1}, {0, 0, 0.5, 0, 0});  // the reference
+  Scene scene = middleOf(sceneOf(kFrontal, {1, 1, 0.002, 1, 1}, {0, 0, 0.5, 0, 0}));  // the reference
   for (const float depth : match(scene).view.map.depth) EXPECT_EQ(depth, kInvalidDepth);
-  scene = sceneOf(kFrontal, {0.002, 0.002, 1, 0.002, 0.002}, {0.5, 0.5, 0, 0.5, 0.5});  // all partners
+  scene =
+      middleOf(sceneOf(kFrontal, {0.002, 0.002, 1, 0.002, 0.002}, {0.5, 0.5, 0, 0.5, 0.5}));  // all partners
   for (const float depth : match(scene).view.map.depth) EXPECT_EQ(depth, kInvalidDepth);
 }
 
