@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "stereo/matching_constants.h"
+#include "stereo/paper_ray.h"
 #include "stereo/plane_sweep.h"
 #include "stereo/surface_sweep.h"
 
@@ -15,6 +16,24 @@ constexpr float kFirstStep = 1.0F;          // pixels of that level
 constexpr int kFirstSweeps = 4;             // along the surface at that level, where they cost little
 constexpr int kMiddleSweeps = 2;            // at levels between that and the finest
 constexpr int kFirstReach = 5, kReach = 4;  // steps
+
+// From one plane to the next in mode `paper`.
+float paperStep(const MatchInput& input) {
+  const auto header = [](const PosedPyramid& photograph) {
+    return PhotographHeader{"", photograph.levels->front().camera, photograph.world_from_camera};
+  };
+  std::vector<PhotographHeader> partners;
+  for (const PosedPyramid& partner : input.partners) partners.push_back(header(partner));
+  const auto steps = paper::raySteps(header(input.reference), partners, input.depths, kPaperStep);
+  return static_cast<float>(steps.step);
+}
+
+// Where no surface sweeps follow the result is that of mode `paper`.
+PlaneSweepOptions firstSweep(const MatchInput& input, const Stage& stage, const StereoOptions& options) {
+  const auto sigma = static_cast<float>(kVoteSigma);
+  if (options.surface_sweeps == 0) return {paperStep(input), sigma, PartnerVotes::All, options.hypotheses};
+  return {kFirstStep * stage.pixel, sigma * kExactStep / kFirstStep, PartnerVotes::Best, options.hypotheses};
+}
 
 DepthLayer enlarged(const DepthLayer& layer, const Stage& stage) {
   return doubled(layer, stage.reference.mean.width(), stage.reference.mean.height(), 2 * stage.pixel);
@@ -32,13 +51,12 @@ int levelsFor(int width, int height, const StereoOptions& options) {
 ViewMatch matchView(const MatchInput& input, const StereoOptions& options) {
   const Pinhole& camera = input.reference.levels->front().camera;
   const int first = levelsFor(camera.width, camera.height, options) - 1;
-  const bool is_exact = options.surface_sweeps == 0;
   ViewMatch match;
-  match.modes = planeSweep(stageOf(input, first, options, kFirstThreshold),
-                           is_exact ? kExactStep : kFirstStep, options.hypotheses);
+  const Stage coarsest = stageOf(input, first, options, kFirstThreshold);
+  match.modes = planeSweep(coarsest, firstSweep(input, coarsest, options));
   match.best = match.modes.front();
   if (options.hypotheses == 1) match.modes.clear();
-  if (is_exact) return match;
+  if (options.surface_sweeps == 0) return match;
   for (int level = first; level >= 0; --level) {
     const Stage stage = stageOf(input, level, options, kSurfaceThreshold);
     if (level < first) {

@@ -41,7 +41,7 @@ class PaperMatcher {
       : reference_(reference),
         partners_(partners),
         options_(options),
-        steps_(paper::raySteps(reference, partners, depths, options.step_px)) {
+        steps_(paper::raySteps(reference, {partners.begin(), partners.end()}, depths, options.step_px)) {
     for (const Photograph& partner : partners) rays_.push_back(paper::rayImage(reference, partner));
   }
 

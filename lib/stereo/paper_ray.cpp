@@ -24,7 +24,7 @@ double speed(const RayImage& ray, const Pinhole& partner, double x, double y, do
   return ((ray.b.head<2>() - pixel * ray.b.z()) / point.z()).norm();
 }
 
-double greatestSpeed(const PhotographHeader& reference, const Photograph& partner,
+double greatestSpeed(const PhotographHeader& reference, const PhotographHeader& partner,
                      const DepthInterval& depths) {
   const RayImage ray = rayImage(reference, partner);
   double greatest = 0;
@@ -50,10 +50,10 @@ RayImage rayImage(const PhotographHeader& reference, const PhotographHeader& par
           k * partner_from_reference.translation()};
 }
 
-RaySteps raySteps(const PhotographHeader& reference, const std::vector<Photograph>& partners,
+RaySteps raySteps(const PhotographHeader& reference, const std::vector<PhotographHeader>& partners,
                   const DepthInterval& depths, double step_px) {
   double greatest = 0;
-  for (const Photograph& partner : partners)
+  for (const PhotographHeader& partner : partners)
     greatest = std::max(greatest, greatestSpeed(reference, partner, depths));
   const double length = 1 / depths.near - 1 / depths.far;
   const int intervals = std::max(2, static_cast<int>(std::ceil(length * greatest / step_px)));

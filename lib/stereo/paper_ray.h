@@ -30,7 +30,7 @@ struct RaySteps {
 
 /// Steps over the whole interval, so small that from one to the next no partner's image of a pixel moves by
 /// more than `step_px`: the partner with the widest baseline decides. At least three.
-RaySteps raySteps(const PhotographHeader& reference, const std::vector<Photograph>& partners,
+RaySteps raySteps(const PhotographHeader& reference, const std::vector<PhotographHeader>& partners,
                   const DepthInterval& depths, double step_px);
 
 }  // namespace vdbfuse::stereo::paper

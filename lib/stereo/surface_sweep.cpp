@@ -57,7 +57,8 @@ DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<T
       forEachWindow(tile, [&](std::size_t pixel, int x, int) {
         const float sum = modes.score[pixel] + modes.support[pixel];
         if (sum == 0) return;
-        layer.inverse_depth(x, y) = stage.first + modes.step[pixel] * range.step;
+        const float w = stage.first + modes.step[pixel] * range.step;
+        layer.inverse_depth(x, y) = std::clamp(w, stage.first, stage.last);
         layer.score(x, y) = sum;
       });
     }

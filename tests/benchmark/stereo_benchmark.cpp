@@ -36,8 +36,9 @@ const std::vector<Photograph>& photographs() {
     for (int i = 0; i < kViews; ++i) {
       const double angle = (i - (kViews - 1) / 2.0) * kStep;
       const Eigen::Vector3d eye(kDistance * std::sin(angle), 0.3 * (i % 3), -kDistance * std::cos(angle));
-      result.push_back(test::photographOfRectangles(
-          {wall, front}, {"camera " + std::to_string(i), camera, lookAt(eye, {0, 0, 0}, {0, -1, 0})}));
+      result.push_back(
+          test::photographOf(test::Rectangles{wall, front},
+                             {"camera " + std::to_string(i), camera, lookAt(eye, {0, 0, 0}, {0, -1, 0})}));
     }
     return result;
   }();

@@ -30,7 +30,9 @@ struct Scene {
   std::vector<Photograph> partners;
   Image<float> truth;
   std::vector<Image<float>> partner_truths;
-  paper::RaySteps steps() const { return paper::raySteps(reference, partners, kDepths, kPaperStep); }
+  paper::RaySteps steps() const {
+    return paper::raySteps(reference, {partners.begin(), partners.end()}, kDepths, kPaperStep);
+  }
 };
 
 Scene sceneOf(const Rectangles& rectangles, const std::array<double, kCameras>& gains = {1, 1, 1, 1, 1},
@@ -38,8 +40,8 @@ Scene sceneOf(const Rectangles& rectangles, const std::array<double, kCameras>& 
   Scene scene;
   const std::vector<PhotographHeader> cameras = test::camerasOnArc(kCameras, 10);
   for (std::size_t i = 0; i < kCameras; ++i) {
-    Photograph photograph = photographOfRectangles(rectangles, cameras[i], gains[i], biases[i]);
-    Image<float> truth = depthOfRectangles(rectangles, cameras[i]);
+    Photograph photograph = photographOf(rectangles, cameras[i], gains[i], biases[i]);
+    Image<float> truth = trueDepthOf(rectangles, cameras[i]);
     if (i == kReference) {
       scene.reference = std::move(photograph), scene.truth = std::move(truth);
     } else {

@@ -27,23 +27,50 @@ std::vector<Wave> wavesOf(int seed) {
   return waves;
 }
 
+// What a ray hits: z, where in the texture, and whose texture.
 struct Hit {
-  const TexturedRectangle* rectangle = nullptr;
   double z = INFINITY, s = 0, t = 0;
+  std::size_t texture = 0;
 };
 
-Hit nearestHit(const Rectangles& rectangles, const PhotographHeader& header, int x, int y) {
+// z grows by 1 along `direction`.
+struct Ray {
+  Eigen::Vector3d eye, direction;
+  Eigen::Vector3d at(double z) const { return eye + z * direction; }
+};
+
+Hit hitOf(const TexturedRectangle& rectangle, const Ray& ray) {
+  const Eigen::Vector3d normal = rectangle.u.cross(rectangle.v);
+  const double z = normal.dot(rectangle.origin - ray.eye) / normal.dot(ray.direction);
+  const Eigen::Vector3d offset = ray.at(z) - rectangle.origin;
+  const double s = offset.dot(rectangle.u), t = offset.dot(rectangle.v);
+  const bool is_hit = z > 0 && std::abs(s) <= rectangle.half_u && std::abs(t) <= rectangle.half_v;
+  return is_hit ? Hit{z, s, t} : Hit{};
+}
+
+Hit hitOf(const TexturedSphere& sphere, const Ray& ray) {
+  const Eigen::Vector3d to_middle = sphere.middle - ray.eye;
+  const double square = ray.direction.squaredNorm(), along = ray.direction.dot(to_middle) / square;
+  const double half2 = along * along - (to_middle.squaredNorm() - sphere.radius * sphere.radius) / square;
+  if (!(half2 >= 0)) return {};
+  const double z = along - std::sqrt(half2);
+  const Eigen::Vector3d offset = ray.at(z) - sphere.middle;
+  return z > 0 ? Hit{z, offset.x() + 0.6 * offset.z(), offset.y() + 0.4 * offset.z()} : Hit{};
+}
+
+// Textures are numbered through the rectangles first.
+Hit nearestHit(const TexturedScene& scene, const PhotographHeader& header, int x, int y) {
   const RigidTransform& pose = header.world_from_camera;
-  const Eigen::Vector3d ray = pose.linear() * unproject(header.camera, x, y, 1);  // z grows by 1 along it
+  const Ray ray{pose.translation(), pose.linear() * unproject(header.camera, x, y, 1)};
   Hit nearest;
-  for (const TexturedRectangle& rectangle : rectangles) {
-    const Eigen::Vector3d normal = rectangle.u.cross(rectangle.v);
-    const double z = normal.dot(rectangle.origin - pose.translation()) / normal.dot(ray);
-    const Eigen::Vector3d offset = pose.translation() + z * ray - rectangle.origin;
-    const double s = offset.dot(rectangle.u), t = offset.dot(rectangle.v);
-    if (z > 0 && z < nearest.z && std::abs(s) <= rectangle.half_u && std::abs(t) <= rectangle.half_v)
-      nearest = {&rectangle, z, s, t};
-  }
+  std::size_t texture = 0;
+  const auto consider = [&](const auto& shape) {
+    const Hit hit = hitOf(shape, ray);
+    if (hit.z < nearest.z) nearest = hit, nearest.texture = texture;
+    ++texture;
+  };
+  for (const TexturedRectangle& rectangle : scene.rectangles) consider(rectangle);
+  for (const TexturedSphere& sphere : scene.spheres) consider(sphere);
   return nearest;
 }
 
@@ -55,31 +82,36 @@ double textureOf(const std::vector<Wave>& waves, double s, double t) {
 
 }  // namespace
 
-Image<float> depthOfRectangles(const Rectangles& rectangles, const PhotographHeader& header) {
+Image<float> trueDepthOf(const TexturedScene& scene, const PhotographHeader& header) {
   Image<float> depth(header.camera.width, header.camera.height);
   for (int y = 0; y < depth.height(); ++y)
     for (int x = 0; x < depth.width(); ++x) {
-      const Hit hit = nearestHit(rectangles, header, x, y);
-      if (hit.rectangle != nullptr) depth(x, y) = static_cast<float>(hit.z);
+      const Hit hit = nearestHit(scene, header, x, y);
+      if (std::isfinite(hit.z)) depth(x, y) = static_cast<float>(hit.z);
     }
   return depth;
 }
 
-Photograph photographOfRectangles(const Rectangles& rectangles, const PhotographHeader& header, double gain,
-                                  double bias) {
+Photograph photographOf(const TexturedScene& scene, const PhotographHeader& header, double gain,
+                        double bias) {
   std::vector<std::vector<Wave>> waves;
-  for (const TexturedRectangle& rectangle : rectangles) waves.push_back(wavesOf(rectangle.seed));
+  for (const TexturedRectangle& rectangle : scene.rectangles) waves.push_back(wavesOf(rectangle.seed));
+  for (const TexturedSphere& sphere : scene.spheres) waves.push_back(wavesOf(sphere.seed));
   Photograph photograph{header, Image<float>(header.camera.width, header.camera.height), {}, {}};
   for (int y = 0; y < header.camera.height; ++y)
     for (int x = 0; x < header.camera.width; ++x) {
-      const Hit hit = nearestHit(rectangles, header, x, y);
-      const double texture =
-          hit.rectangle == nullptr
-              ? 0
-              : textureOf(waves[static_cast<std::size_t>(hit.rectangle - rectangles.data())], hit.s, hit.t);
+      const Hit hit = nearestHit(scene, header, x, y);
+      const double texture = std::isfinite(hit.z) ? textureOf(waves[hit.texture], hit.s, hit.t) : 0;
       photograph.brightness(x, y) = static_cast<float>(gain * texture + bias);
     }
   return photograph;
+}
+
+std::vector<Photograph> photographsOf(const TexturedScene& scene,
+                                      const std::vector<PhotographHeader>& headers) {
+  std::vector<Photograph> photographs;
+  for (const PhotographHeader& header : headers) photographs.push_back(photographOf(scene, header));
+  return photographs;
 }
 
 std::vector<PhotographHeader> camerasOnArc(int count, double step_deg) {
