@@ -22,15 +22,16 @@ void addRow(const Testimony& view, const PlaneMap& planes, const SweepTile& tile
 }  // namespace
 
 void addOtherVoters(const std::vector<Testimony>& others, const PlaneMap& planes, const SweepTile& tile,
-                    const SweepRange& range, OtherVoters& rows, std::vector<VoterRows>& voters) {
+                    const SweepRange& range, OtherVoters& memory, std::vector<VoterRows>& rows) {
   const std::size_t size = tile.at(0, tile.height);
-  rows.step.resize(others.size() * size), rows.score.assign(others.size() * size, 0.0F);
-  rows.curvature.assign(size, kOtherViewsCurvature);
+  memory.step.resize(others.size() * size), memory.score.assign(others.size() * size, 0.0F);
+  memory.curvature.assign(size, kOtherViewsCurvature);
+  int voter = rows.empty() ? 0 : rows.back().voter + 1;
   for (std::size_t v = 0; v < others.size(); ++v) {
-    float *step = rows.step.data() + v * size, *score = rows.score.data() + v * size;
+    float *step = memory.step.data() + v * size, *score = memory.score.data() + v * size;
     for (int y = 0; y < tile.height; ++y)
       addRow(others[v], planes, tile, range, y, step + tile.at(0, y), score + tile.at(0, y));
-    voters.push_back({step, score, rows.curvature.data()});
+    rows.push_back({step, score, memory.curvature.data(), voter++});
   }
 }
 

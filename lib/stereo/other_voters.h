@@ -18,9 +18,9 @@ struct OtherVoters {
 };
 
 /// What the views say of the windows of a tile (of its size, base and inverse spread) that is swept over
-/// `range`. What landed beside a pixel is brought there along the slant of `planes`. Replaces `rows` and adds
-/// their voters to `voters`, which live as long as they do.
+/// `range`. What landed beside a pixel is brought there along the slant of `planes`. Replaces `memory` and
+/// adds it to `rows`, each view as a new voter.
 void addOtherVoters(const std::vector<Testimony>& others, const PlaneMap& planes, const SweepTile& tile,
-                    const SweepRange& range, OtherVoters& rows, std::vector<VoterRows>& voters);
+                    const SweepRange& range, OtherVoters& memory, std::vector<VoterRows>& rows);
 
 }  // namespace vdbfuse::stereo

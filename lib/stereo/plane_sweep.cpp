@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stereo/vote_kernels.h"
+
 namespace vdbfuse::stereo {
 namespace {
 
-// Replaces `peaks`, all with the same curvature: what windows that face the camera tell of it is worth
-// little.
-void collect(const PeakLists& lists, std::size_t pixel, std::vector<Peak>& peaks) {
-  peaks.clear();
-  const auto partners = static_cast<std::size_t>(lists.partners);
-  for (std::size_t list = pixel * partners; list < (pixel + 1) * partners; ++list) {
-    const Peak* first = lists.peaks.data() + list * kMostPeaks;
-    peaks.insert(peaks.end(), first, first + lists.counts[list]);
+// All with the same curvature: what windows that face the camera tell of it is worth little.
+std::vector<VoterRows> rowsOf(const PeakLists& lists, std::size_t partners, PartnerVotes votes,
+                              const AlignedFloats& curvature) {
+  std::vector<VoterRows> rows;
+  for (std::size_t k = 0; k < partners * kMostPeaks; ++k) {
+    const std::size_t voter = votes == PartnerVotes::All ? k : k / kMostPeaks;
+    rows.push_back({lists.step.data() + k * lists.pixels, lists.score.data() + k * lists.pixels,
+                    curvature.data(), static_cast<int>(voter)});
   }
-  for (Peak& peak : peaks) peak.curvature = 1;
+  return rows;
 }
 
 // All inverse depths; a step more on each side, because ends are no peaks.
@@ -36,23 +38,20 @@ std::vector<DepthLayer> planeSweep(const Stage& stage, const PlaneSweepOptions& 
     SweepMemory memory;
     prepareTile(stage.reference, rect, stage.first, tile);
     PeakLists lists;
-    lists.partners = static_cast<int>(stage.pictures.size());
-    lists.counts.assign(tile.at(0, tile.height) * stage.pictures.size(), 0);
-    lists.peaks.resize(lists.counts.size() * kMostPeaks);
+    lists.clear(tile, stage.pictures.size());
     for (std::size_t j = 0; j < stage.pictures.size(); ++j)
-      sweepForAll(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, static_cast<int>(j),
-                  memory, lists);
-    Voting voting(options.sigma, layers.size() + 1, options.votes);
-    std::vector<Peak> peaks;
-    forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
-      collect(lists, pixel, peaks);
-      const Modes& modes = voting.count(peaks);
-      for (std::size_t k = 0; k < std::min(modes.size(), layers.size()); ++k) {
-        const float w = stage.first + range.first + modes[k].step * range.step;
-        store(modes[k], k + 1 < modes.size() ? modes[k + 1].score : 0.0F,
-              std::clamp(w, stage.first, stage.last), range.step, x, y, layers[k]);
-      }
-    });
+      sweepForAll(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, j, memory, lists);
+    const AlignedFloats curvature(lists.pixels, 1.0F);
+    const std::vector<VoterRows> rows = rowsOf(lists, stage.pictures.size(), options.votes, curvature);
+    std::vector<ModeRows> modes(layers.size());
+    countVotes(rows, rows.size(), options.sigma, lists.pixels, modes);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
+        if (modes[k].score[pixel] == 0) return;
+        const float w = stage.first + range.first + modes[k].step[pixel] * range.step;
+        store(modes[k], pixel, std::clamp(w, stage.first, stage.last), range.step, x, y, layers[k]);
+      });
+    }
   });
   return layers;
 }

@@ -6,9 +6,14 @@
 
 #include "stereo/match_stage.h"
 #include "stereo/surface.h"
-#include "stereo/votes.h"
 
 namespace vdbfuse::stereo {
+
+/// How many of its peaks a partner votes with.
+enum class PartnerVotes {
+  Best,  ///< the best one near k: C(k) = Σ_j max_i S_ji W(k − k_ji)
+  All,   ///< the paper's: C(k) = Σ_j Σ_i S_ji W(k − k_ji)
+};
 
 struct PlaneSweepOptions {
   float step = 0;   ///< inverse depth from one plane to the next

@@ -102,13 +102,14 @@ DepthLayer emptyLayer(int width, int height) {
   return {zero, zero, zero, zero, Image<std::uint8_t>(width, height), zero};
 }
 
-void store(const Mode& mode, float second, float inverse_depth, float step, int x, int y, DepthLayer& layer) {
+void store(const ModeRows& modes, std::size_t pixel, float inverse_depth, float step, int x, int y,
+           DepthLayer& layer) {
   layer.inverse_depth(x, y) = inverse_depth;
-  layer.score(x, y) = mode.score;
-  layer.support(x, y) = mode.support;
-  layer.second(x, y) = second;
-  layer.voters(x, y) = mode.voters;
-  layer.spread2(x, y) = mode.spread2 * step * step;
+  layer.score(x, y) = modes.score[pixel];
+  layer.support(x, y) = modes.support[pixel];
+  layer.second(x, y) = modes.second[pixel];
+  layer.voters(x, y) = static_cast<std::uint8_t>(modes.voters[pixel]);
+  layer.spread2(x, y) = modes.spread2[pixel] * step * step;
 }
 
 Image<float> filled(const Image<float>& inverse_depth, float otherwise) {

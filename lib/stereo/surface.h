@@ -3,7 +3,7 @@
 #pragma once
 
 #include "stereo/plane_fit.h"
-#include "stereo/votes.h"
+#include "stereo/vote_kernels.h"
 #include "vdbfuse/geometry/image.h"
 
 namespace vdbfuse::stereo {
@@ -11,16 +11,17 @@ namespace vdbfuse::stereo {
 /// What is known of every pixel of a level.
 struct DepthLayer {
   Image<float> inverse_depth;  ///< 0: nothing was found
-  Image<float> score;          ///< Mode::score
-  Image<float> support;        ///< Mode::support
-  Image<float> second;         ///< C of the best peak well apart from this one: of partners and other views
+  Image<float> score;          ///< ModeRows::score
+  Image<float> support;        ///< ModeRows::support
+  Image<float> second;         ///< ModeRows::second
   Image<std::uint8_t> voters;
-  Image<float> spread2;  ///< Mode::spread2, as inverse depth
+  Image<float> spread2;  ///< ModeRows::spread2, as inverse depth
 };
 DepthLayer emptyLayer(int width, int height);
 
-/// Sets all of a pixel. `step`: inverse depth of a step of the mode.
-void store(const Mode& mode, float second, float inverse_depth, float step, int x, int y, DepthLayer& layer);
+/// Sets all of the pixel (x, y) to what that pixel of a tile voted for. `step`: inverse depth of a step.
+void store(const ModeRows& modes, std::size_t pixel, float inverse_depth, float step, int x, int y,
+           DepthLayer& layer);
 
 /// Pixels without a value get the mean of those around, nearest first (pull and push over a pyramid). Where
 /// there is none at all: `otherwise`.

@@ -7,7 +7,6 @@
 #include "stereo/other_voters.h"
 #include "stereo/plane_fit.h"
 #include "stereo/vote_kernels.h"
-#include "stereo/votes.h"
 
 namespace vdbfuse::stereo {
 namespace {
@@ -15,11 +14,6 @@ namespace {
 constexpr int kSmoothRadius = 4;
 constexpr float kSmoothScale = 1, kFirstSmoothScale = 8;  // pixels of the level
 constexpr int kSmoothRounds = 4;
-
-Mode modeOf(const ModeRows& modes, std::size_t pixel) {
-  return {modes.step[pixel], modes.score[pixel], modes.support[pixel],
-          static_cast<std::uint8_t>(modes.voters[pixel]), modes.spread2[pixel]};
-}
 
 // One row of the level without its pictures, for votes alone, at one inverse depth.
 SweepTile rowOf(const Stage& stage, int y) {
@@ -45,22 +39,21 @@ DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<T
   const PlaneMap planes = planesOf(stage, own);
   const SweepRange range{0, kExactStep * stage.pixel, 1};
   parallelFor(static_cast<std::size_t>(own.score.height()), 16, [&](std::size_t begin, std::size_t end) {
-    OtherVoters rows;
+    OtherVoters memory;
     ModeRows modes;
-    std::vector<VoterRows> voters;
     for (std::size_t row = begin; row < end; ++row) {
       const int y = static_cast<int>(row);
       const SweepTile tile = rowOf(stage, y);
       AlignedFloats step(tile.base.size()), score(tile.base.size());
+      const AlignedFloats curvature(tile.base.size(), kOtherViewsCurvature);
       forEachWindow(tile, [&](std::size_t pixel, int x, int) {
         if (!(own.inverse_depth(x, y) > 0)) return;
         step[pixel] = (own.inverse_depth(x, y) - stage.first) / range.step;
         score[pixel] = own.score(x, y);
       });
-      voters.clear();
-      addOtherVoters(others, planes, tile, range, rows, voters);
-      voters.insert(voters.begin(), {step.data(), score.data(), rows.curvature.data()});
-      countVotes(voters, 1, static_cast<float>(kVoteSigma), tile.base.size(), modes);
+      std::vector<VoterRows> rows{{step.data(), score.data(), curvature.data()}};
+      addOtherVoters(others, planes, tile, range, memory, rows);
+      countVotes(rows, 1, static_cast<float>(kVoteSigma), tile.base.size(), {&modes, 1});
       forEachWindow(tile, [&](std::size_t pixel, int x, int) {
         const float sum = modes.score[pixel] + modes.support[pixel];
         if (sum == 0) return;
@@ -92,24 +85,24 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
     std::vector<BestPeaks> best(stage.pictures.size());
     for (std::size_t j = 0; j < stage.pictures.size(); ++j)
       sweepForBest(tile, *stage.pictures[j], stage.motions[j], range, stage.limits, memory, best[j]);
-    OtherVoters other_rows;
-    std::vector<VoterRows> voters;
+    std::vector<VoterRows> rows;
     for (const BestPeaks& peaks : best)
-      voters.push_back({peaks.step.data(), peaks.score.data(), peaks.curvature.data()});
-    addOtherVoters(others, planes, tile, range, other_rows, voters);
+      rows.push_back(
+          {peaks.step.data(), peaks.score.data(), peaks.curvature.data(), static_cast<int>(rows.size())});
+    OtherVoters other_rows;
+    addOtherVoters(others, planes, tile, range, other_rows, rows);
     ModeRows modes;
-    countVotes(voters, best.size(), static_cast<float>(kVoteSigma) * kExactStep / step_px,
-               tile.at(0, tile.height), modes);
+    countVotes(rows, best.size(), static_cast<float>(kVoteSigma) * kExactStep / step_px,
+               tile.at(0, tile.height), {&modes, 1});
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
-      const Mode mode = modeOf(modes, pixel);
-      if (mode.score + mode.support == 0) return;
-      const float before_score = before.score(x, y) + before.support(x, y);
-      if (guide.is_foreign(x, y) && mode.score + mode.support <= before_score) {
+      const float score = modes.score[pixel] + modes.support[pixel];
+      if (score == 0) return;
+      if (guide.is_foreign(x, y) && score <= before.score(x, y) + before.support(x, y)) {
         layer.score(x, y) = before.score(x, y);
         return;
       }
-      const float w = base(x, y) + range.first + mode.step * range.step;
-      store(mode, modes.second[pixel], std::clamp(w, stage.first, stage.last), range.step, x, y, layer);
+      const float w = base(x, y) + range.first + modes.step[pixel] * range.step;
+      store(modes, pixel, std::clamp(w, stage.first, stage.last), range.step, x, y, layer);
     });
   });
   return layer;

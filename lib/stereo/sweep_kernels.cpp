@@ -172,20 +172,24 @@ HWY_INLINE IntVec windowSum(const std::int32_t* from, int window) {
   return sum;
 }
 
-// Σ of seven neighbours, one vector after the other. The widest vectors are cheaper to shift than to load
-// from anywhere: each of those loads touches two lines of the cache.
-class Sums7 {
+// Σ of five or seven neighbours, one vector after the other. The widest vectors are cheaper to shift than to
+// load from anywhere: each of those loads touches two lines of the cache.
+template <int kWindow>
+class FixedSums {
+  static_assert(kWindow == 5 || kWindow == 7);
+
  public:
 #if HWY_TARGET <= HWY_AVX3
-  HWY_INLINE explicit Sums7(const std::int32_t* from)
+  HWY_INLINE explicit FixedSums(const std::int32_t* from)
       : from_(from), here_(load(0)), next_(load(1)), pairs_(hn::Add(here_, later<1>(here_, next_))) {}
   HWY_INLINE IntVec next() {
     const IntVec after = load(2), next_pairs = hn::Add(next_, later<1>(next_, after));
-    const IntVec fours = hn::Add(pairs_, later<2>(pairs_, next_pairs));
-    const IntVec threes = hn::Add(later<4>(pairs_, next_pairs), later<6>(here_, next_));
+    IntVec sum = hn::Add(pairs_, later<2>(pairs_, next_pairs));
+    if constexpr (kWindow == 7) sum = hn::Add(sum, later<4>(pairs_, next_pairs));
+    sum = hn::Add(sum, later<kWindow - 1>(here_, next_));
     here_ = next_, next_ = after, pairs_ = next_pairs;
     from_ += hn::Lanes(Ints());
-    return hn::Add(fours, threes);
+    return sum;
   }
 
  private:
@@ -200,15 +204,15 @@ class Sums7 {
   const std::int32_t* from_;
   IntVec here_, next_, pairs_;
 #else
-  explicit Sums7(const std::int32_t* from) : from_(from) {}
+  explicit FixedSums(const std::int32_t* from) : from_(from) {}
   HWY_INLINE IntVec next() {
     const Ints d;
-    const IntVec a = hn::Add(hn::Load(d, from_), hn::LoadU(d, from_ + 1));
-    const IntVec b = hn::Add(hn::LoadU(d, from_ + 2), hn::LoadU(d, from_ + 3));
-    const IntVec c = hn::Add(hn::LoadU(d, from_ + 4), hn::LoadU(d, from_ + 5));
-    const IntVec last = hn::LoadU(d, from_ + 6);
+    IntVec sum = hn::Add(hn::Add(hn::Load(d, from_), hn::LoadU(d, from_ + 1)),
+                         hn::Add(hn::LoadU(d, from_ + 2), hn::LoadU(d, from_ + 3)));
+    if constexpr (kWindow == 7) sum = hn::Add(sum, hn::Add(hn::LoadU(d, from_ + 4), hn::LoadU(d, from_ + 5)));
+    sum = hn::Add(sum, hn::LoadU(d, from_ + kWindow - 1));
     from_ += hn::Lanes(d);
-    return hn::Add(hn::Add(a, b), hn::Add(c, last));
+    return sum;
   }
 
  private:
@@ -265,7 +269,7 @@ HWY_INLINE Parabola parabola(FloatVec before, FloatVec at, FloatVec after, float
 
 class BestSink {
  public:
-  BestSink(BestPeaks& peaks) : peaks_(peaks) {}
+  explicit BestSink(BestPeaks& peaks) : peaks_(peaks) {}
   HWY_INLINE void put(std::size_t i, FloatMask is_peak, FloatVec before, FloatVec at, FloatVec after,
                       float k) const {
     const Floats d;
@@ -287,40 +291,43 @@ class BestSink {
 
 class ListSink {
  public:
-  ListSink(PeakLists& lists, int index) : lists_(lists), index_(index) {}
+  ListSink(PeakLists& lists, std::size_t index) : lists_(lists), index_(index) {}
   HWY_INLINE void put(std::size_t i, FloatMask is_peak, FloatVec before, FloatVec at, FloatVec after,
                       float k) const {
     const Floats d;
     if (hn::AllFalse(d, is_peak)) return;
     const Parabola top = parabola(before, at, after, k);
-    alignas(64) float step[kVectorLanes], score[kVectorLanes], curvature[kVectorLanes];
+    alignas(64) float step[kVectorLanes], score[kVectorLanes];
     hn::Store(top.step, d, step);
-    hn::Store(top.curvature, d, curvature);
     hn::Store(at, d, score);
     std::uint8_t bytes[8] = {};  // all that StoreMaskBits may write
     hn::StoreMaskBits(d, is_peak, bytes);
     for (unsigned bits = bytes[0] | unsigned{bytes[1]} << 8; bits != 0; bits &= bits - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-      push(i + lane, {step[lane], score[lane], curvature[lane], index_});
+      push(i + lane, step[lane], score[lane]);
     }
   }
 
  private:
-  void push(std::size_t pixel, const Peak& peak) const {
-    const std::size_t list =
-        pixel * static_cast<std::size_t>(lists_.partners) + static_cast<std::size_t>(index_);
-    std::uint8_t& count = lists_.counts[list];
-    Peak* peaks = lists_.peaks.data() + list * kMostPeaks;
-    if (count < kMostPeaks) {
-      peaks[count++] = peak;
-      return;
+  void push(std::size_t pixel, float step, float score) const {
+    std::uint8_t& count = lists_.counts[index_ * lists_.pixels + pixel];
+    const std::size_t first = index_ * kMostPeaks * lists_.pixels + pixel;
+    std::size_t place = first + count * lists_.pixels;
+    if (count == kMostPeaks) {
+      place = first;
+      for (std::size_t k = 1; k < kMostPeaks; ++k) {
+        const std::size_t other = first + k * lists_.pixels;
+        if (lists_.score[other] < lists_.score[place]) place = other;
+      }
+      if (lists_.score[place] >= score) return;
+    } else {
+      ++count;
     }
-    Peak* worst = std::min_element(peaks, peaks + kMostPeaks,
-                                   [](const Peak& a, const Peak& b) { return a.score < b.score; });
-    if (worst->score < peak.score) *worst = peak;
+    lists_.step[place] = step, lists_.score[place] = score;
   }
+
   PeakLists& lists_;
-  int index_;
+  std::size_t index_;
 };
 
 // Three samples of all curves of a tile, the last one new.
@@ -363,8 +370,10 @@ HWY_INLINE void lookAtLine(const SweepTile& tile, const Span& span, int line, co
     lookForPeaks(row, v, vv, uv, span, from, samples, k, limits.threshold, sink);
   };
   const std::int32_t *v = memory.columns.data() + span.begin, *vv = v + stride, *uv = vv + stride;
-  if (window == 7)
-    look(Sums7(v), Sums7(vv), Sums7(uv));
+  if (window == 5)
+    look(FixedSums<5>(v), FixedSums<5>(vv), FixedSums<5>(uv));
+  else if (window == 7)
+    look(FixedSums<7>(v), FixedSums<7>(vv), FixedSums<7>(uv));
   else
     look(Sums(v, window), Sums(vv, window), Sums(uv, window));
 }
@@ -416,7 +425,7 @@ void sweepBest(const SweepTile& tile, const PictureLevel& partner, const ImageMo
 }
 
 void sweepAll(const SweepTile& tile, const PictureLevel& partner, const ImageMotion& motion,
-              const SweepRange& range, const SweepLimits& limits, int index, SweepMemory& memory,
+              const SweepRange& range, const SweepLimits& limits, std::size_t index, SweepMemory& memory,
               PeakLists& peaks) {
   sweep(tile, partner, motion, range, limits, memory, ListSink(peaks, index));
 }
@@ -449,6 +458,12 @@ ImageMotion imageMotion(const Pinhole& reference, const RigidTransform& world_fr
   return motion;
 }
 
+void PeakLists::clear(const SweepTile& tile, std::size_t partners) {
+  pixels = tile.at(0, tile.height);
+  counts.assign(partners * pixels, 0);
+  score.assign(partners * kMostPeaks * pixels, kNoPeak), step.resize(score.size());
+}
+
 void sweepForBest(const SweepTile& tile, const PictureLevel& partner, const ImageMotion& motion,
                   const SweepRange& range, const SweepLimits& limits, SweepMemory& memory, BestPeaks& peaks) {
   const std::size_t size = tile.at(0, tile.height);
@@ -458,7 +473,7 @@ void sweepForBest(const SweepTile& tile, const PictureLevel& partner, const Imag
 }
 
 void sweepForAll(const SweepTile& tile, const PictureLevel& partner, const ImageMotion& motion,
-                 const SweepRange& range, const SweepLimits& limits, int index, SweepMemory& memory,
+                 const SweepRange& range, const SweepLimits& limits, std::size_t index, SweepMemory& memory,
                  PeakLists& peaks) {
   HWY_DYNAMIC_DISPATCH(sweepAll)(tile, partner, motion, range, limits, index, memory, peaks);
 }

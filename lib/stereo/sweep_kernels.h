@@ -73,18 +73,16 @@ struct BestPeaks {
 };
 inline constexpr float kNoPeak = -1.0F;
 
-struct Peak {
-  float step = 0, score = 0;
-  float curvature = 1;  ///< BestPeaks::curvature: the steeper, the better the place is known
-  std::int32_t partner = 0;
-};
-
 /// All local maxima of all partners, at most kMostPeaks a pixel and partner (the best ones).
 inline constexpr int kMostPeaks = 6;
 struct PeakLists {
-  int partners = 0;
-  std::vector<std::uint8_t> counts;  ///< pixel · partners + partner
-  std::vector<Peak> peaks;           ///< (pixel · partners + partner) · kMostPeaks
+  std::size_t pixels = 0;
+  std::vector<std::uint8_t> counts;  ///< partner · pixels + pixel
+  /// (partner · kMostPeaks + number) · pixels + pixel; the score is kNoPeak beyond the count.
+  AlignedFloats step, score;
+
+  /// Empty lists for a tile.
+  void clear(const SweepTile& tile, std::size_t partners);
 };
 
 /// The inverse depths that a tile is swept over: w(x) + first + k·step, 0 ≤ k < count.
@@ -111,7 +109,7 @@ void sweepForBest(const SweepTile& tile, const PictureLevel& partner, const Imag
 
 /// Adds the peaks of partner number `index`.
 void sweepForAll(const SweepTile& tile, const PictureLevel& partner, const ImageMotion& motion,
-                 const SweepRange& range, const SweepLimits& limits, int index, SweepMemory& memory,
+                 const SweepRange& range, const SweepLimits& limits, std::size_t index, SweepMemory& memory,
                  PeakLists& peaks);
 
 }  // namespace vdbfuse::stereo

@@ -7,6 +7,8 @@
 // after it:
 #include <hwy/highway.h>
 
+#include <vector>
+
 HWY_BEFORE_NAMESPACE();
 namespace vdbfuse::stereo {
 namespace HWY_NAMESPACE {
@@ -14,6 +16,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::CappedTag<float, kVectorLanes>;
 using FloatVec = hn::Vec<Floats>;
+using FloatMask = hn::Mask<Floats>;
 HWY_INLINE FloatVec set(float value) { return hn::Set(Floats(), value); }
 
 // exp(−d²/2σ²) up to 4σ, 0 beyond: the eighth power of exp(−u), u = d²/16σ² in [0, 1], by a polynomial
@@ -34,49 +37,96 @@ class Gaussian {
   FloatVec scale_;
 };
 
-// Those who vote in a vector of pixels, one after the other.
+// The peaks in a vector of pixels, one after the other.
 class Ballot {
  public:
-  explicit Ballot(float* memory) : memory_(memory) {}
+  explicit Ballot(std::size_t rows) : memory_(4 * kVectorLanes * rows), voters_(rows) {}
   std::size_t size() const { return size_; }
-  std::size_t partners() const { return partners_; }
-  HWY_INLINE FloatVec step(std::size_t j) const { return get(j, 0); }
-  HWY_INLINE FloatVec score(std::size_t j) const { return get(j, 1); }
-  HWY_INLINE FloatVec pull(std::size_t j) const { return get(j, 2); }  // score · curvature
-  HWY_INLINE FloatVec count(std::size_t j) const { return get(j, 3); }
-  HWY_INLINE void setCount(std::size_t j, FloatVec c) const { hn::Store(c, Floats(), row(j, 3)); }
+  bool isPartner(std::size_t i) const { return i < partners_; }
+  bool haveSameVoter(std::size_t i, std::size_t j) const { return voters_[i] == voters_[j]; }
+  bool hasLists() const { return has_lists_; }
+  HWY_INLINE FloatVec step(std::size_t i) const { return get(i, 0); }
+  HWY_INLINE FloatVec score(std::size_t i) const { return get(i, 1); }
+  HWY_INLINE FloatVec curvature(std::size_t i) const { return get(i, 2); }
+  HWY_INLINE FloatVec count(std::size_t i) const { return get(i, 3); }  // C at the peak; 0: no candidate
+  HWY_INLINE void setCount(std::size_t i, FloatVec c) { hn::Store(c, Floats(), row(i, 3)); }
 
-  HWY_INLINE void fill(std::span<const VoterRows> voters, std::size_t partners, std::size_t pixel) {
+  // Leaves out those that no pixel has.
+  HWY_INLINE void fill(std::span<const VoterRows> rows, std::size_t partners, std::size_t pixel) {
     const Floats d;
     size_ = partners_ = 0;
-    for (std::size_t j = 0; j < voters.size(); ++j) {
-      const FloatVec found = hn::Load(d, voters[j].score + pixel);
+    has_lists_ = false;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const FloatVec found = hn::Load(d, rows[i].score + pixel);
       const auto votes = hn::Gt(found, set(0.0F));
       if (hn::AllFalse(d, votes)) continue;
-      const FloatVec curvature = hn::Load(d, voters[j].curvature + pixel);
-      hn::Store(hn::IfThenElseZero(votes, hn::Load(d, voters[j].step + pixel)), d, row(size_, 0));
+      hn::Store(hn::IfThenElseZero(votes, hn::Load(d, rows[i].step + pixel)), d, row(size_, 0));
       hn::Store(hn::IfThenElseZero(votes, found), d, row(size_, 1));
-      hn::Store(hn::IfThenElseZero(votes, hn::Mul(found, curvature)), d, row(size_, 2));
+      hn::Store(hn::IfThenElseZero(votes, hn::Load(d, rows[i].curvature + pixel)), d, row(size_, 2));
+      voters_[size_] = rows[i].voter;
+      if (size_ > 0 && haveSameVoter(size_ - 1, size_)) has_lists_ = true;
       ++size_;
-      if (j < partners) ++partners_;
+      if (i < partners) ++partners_;
     }
   }
 
  private:
-  HWY_INLINE float* row(std::size_t j, std::size_t field) const {
-    return memory_ + (4 * j + field) * hn::Lanes(Floats());
+  HWY_INLINE float* row(std::size_t i, std::size_t field) {
+    return memory_.data() + (4 * i + field) * hn::Lanes(Floats());
   }
-  HWY_INLINE FloatVec get(std::size_t j, std::size_t field) const {
-    return hn::Load(Floats(), row(j, field));
+  HWY_INLINE FloatVec get(std::size_t i, std::size_t field) const {
+    return hn::Load(Floats(), memory_.data() + (4 * i + field) * hn::Lanes(Floats()));
   }
 
-  float* memory_;
+  AlignedFloats memory_;
+  std::vector<int> voters_;
   std::size_t size_ = 0, partners_ = 0;
+  bool has_lists_ = false;
 };
 
-// C at every voter's step; 0 where a pixel has no such voter.
-HWY_INLINE void countAll(const Ballot& ballot, const Gaussian& gaussian) {
-  for (std::size_t j = 0; j < ballot.size(); ++j) ballot.setCount(j, ballot.score(j));
+struct Vote {
+  FloatVec weighted;  // S·W
+  FloatVec step, curvature;
+};
+
+// Calls use(vote, whether it is a partner's) for the best peak of every voter near `step`, the first of
+// equals.
+template <class Use>
+HWY_INLINE void forEachVoter(const Ballot& ballot, const Gaussian& gaussian, FloatVec step, const Use& use) {
+  const auto vote_of = [&](std::size_t i) HWY_ATTR {
+    const FloatVec at = ballot.step(i);
+    return Vote{hn::Mul(ballot.score(i), gaussian.at(hn::Sub(at, step))), at, ballot.curvature(i)};
+  };
+  for (std::size_t i = 0; i < ballot.size();) {
+    const std::size_t first = i;
+    Vote best = vote_of(i);
+    for (++i; i < ballot.size() && ballot.haveSameVoter(first, i); ++i) {
+      const Vote other = vote_of(i);
+      const auto is_better = hn::Gt(other.weighted, best.weighted);
+      best = {hn::Max(other.weighted, best.weighted), hn::IfThenElse(is_better, other.step, best.step),
+              hn::IfThenElse(is_better, other.curvature, best.curvature)};
+    }
+    use(best, ballot.isPartner(first));
+  }
+}
+
+HWY_INLINE void setCountOfPeaks(Ballot& ballot, std::size_t i, FloatVec count) {
+  ballot.setCount(i, hn::IfThenElseZero(hn::Gt(ballot.score(i), set(0.0F)), count));
+}
+
+// C at every peak, where voters have several.
+HWY_INLINE void countLists(Ballot& ballot, const Gaussian& gaussian) {
+  for (std::size_t i = 0; i < ballot.size(); ++i) {
+    FloatVec count = set(0.0F);
+    forEachVoter(ballot, gaussian, ballot.step(i),
+                 [&](const Vote& vote, bool) HWY_ATTR { count = hn::Add(count, vote.weighted); });
+    setCountOfPeaks(ballot, i, count);
+  }
+}
+
+// The same where each has one: half the weights.
+HWY_INLINE void countPairs(Ballot& ballot, const Gaussian& gaussian) {
+  for (std::size_t i = 0; i < ballot.size(); ++i) ballot.setCount(i, ballot.score(i));
   for (std::size_t i = 0; i < ballot.size(); ++i) {
     const FloatVec step = ballot.step(i), score = ballot.score(i);
     FloatVec count = ballot.count(i);
@@ -85,98 +135,103 @@ HWY_INLINE void countAll(const Ballot& ballot, const Gaussian& gaussian) {
       count = hn::MulAdd(weight, ballot.score(j), count);
       ballot.setCount(j, hn::MulAdd(weight, score, ballot.count(j)));
     }
-    ballot.setCount(i, hn::IfThenElseZero(hn::Gt(score, set(0.0F)), count));
+    setCountOfPeaks(ballot, i, count);
   }
 }
 
 struct Candidate {
-  FloatVec step, index;
+  FloatVec count, step, index;
 };
 HWY_INLINE Candidate bestOf(const Ballot& ballot) {
-  FloatVec best = set(0.0F);
-  Candidate candidate{set(0.0F), set(-1.0F)};
-  for (std::size_t j = 0; j < ballot.size(); ++j) {
-    const FloatVec count = ballot.count(j);
-    const auto better = hn::Gt(count, best);
-    best = hn::Max(count, best);
-    candidate.step = hn::IfThenElse(better, ballot.step(j), candidate.step);
-    candidate.index = hn::IfThenElse(better, set(static_cast<float>(j)), candidate.index);
+  Candidate best{set(0.0F), set(0.0F), set(-1.0F)};
+  for (std::size_t i = 0; i < ballot.size(); ++i) {
+    const FloatVec count = ballot.count(i);
+    const auto is_better = hn::Gt(count, best.count);
+    best = {hn::Max(count, best.count), hn::IfThenElse(is_better, ballot.step(i), best.step),
+            hn::IfThenElse(is_better, set(static_cast<float>(i)), best.index)};
   }
-  return candidate;
+  return best;
 }
 
 HWY_INLINE FloatVec shifted(const Ballot& ballot, const Gaussian& gaussian, FloatVec step) {
   constexpr int kShifts = 4;
   for (int k = 0; k < kShifts; ++k) {
     FloatVec sum = set(0.0F), place = set(0.0F);
-    for (std::size_t j = 0; j < ballot.size(); ++j) {
-      const FloatVec at = ballot.step(j);
-      const FloatVec pull = hn::Mul(ballot.pull(j), gaussian.at(hn::Sub(at, step)));
-      sum = hn::Add(sum, pull), place = hn::MulAdd(pull, at, place);
-    }
+    forEachVoter(ballot, gaussian, step, [&](const Vote& vote, bool) HWY_ATTR {
+      const FloatVec pull = hn::Mul(vote.weighted, vote.curvature);
+      sum = hn::Add(sum, pull), place = hn::MulAdd(pull, vote.step, place);
+    });
     step = hn::IfThenElse(hn::Gt(sum, set(0.0F)), hn::Div(place, sum), step);
   }
   return step;
 }
 
-// The fields of a mode at `step`.
-HWY_INLINE void describe(const Ballot& ballot, const Gaussian& gaussian, float sigma, FloatVec step,
-                         std::size_t pixel, ModeRows& modes) {
+// Without `second`.
+HWY_INLINE void store(const Ballot& ballot, const Gaussian& gaussian, float sigma, FloatVec step,
+                      FloatMask is_some, std::size_t pixel, ModeRows& mode) {
   const Floats d;
+  const hn::RebindToSigned<Floats> di;
   const FloatVec zero = set(0.0F);
   FloatVec score = zero, support = zero, voters = zero, spread2 = zero, weights = zero;
-  for (std::size_t j = 0; j < ballot.partners(); ++j) {
-    const FloatVec distance = hn::Sub(ballot.step(j), step);
-    const FloatVec vote = hn::Mul(ballot.score(j), gaussian.at(distance));
-    score = hn::Add(score, vote);
-    const auto near = hn::And(hn::Gt(vote, zero), hn::Le(hn::Abs(distance), set(2 * sigma)));
-    const FloatVec weight = hn::IfThenElseZero(near, vote);
-    voters = hn::Add(voters, hn::IfThenElseZero(near, set(1.0F)));
+  forEachVoter(ballot, gaussian, step, [&](const Vote& vote, bool is_partner) HWY_ATTR {
+    if (!is_partner) {
+      support = hn::Add(support, vote.weighted);
+      return;
+    }
+    score = hn::Add(score, vote.weighted);
+    const FloatVec distance = hn::Sub(vote.step, step);
+    const auto is_near = hn::And(hn::Gt(vote.weighted, zero), hn::Le(hn::Abs(distance), set(2 * sigma)));
+    const FloatVec weight = hn::IfThenElseZero(is_near, vote.weighted);
+    voters = hn::Add(voters, hn::IfThenElseZero(is_near, set(1.0F)));
     spread2 = hn::MulAdd(weight, hn::Mul(distance, distance), spread2), weights = hn::Add(weights, weight);
-  }
-  for (std::size_t j = ballot.partners(); j < ballot.size(); ++j)
-    support = hn::MulAdd(ballot.score(j), gaussian.at(hn::Sub(ballot.step(j), step)), support);
-  hn::Store(step, d, modes.step.data() + pixel);
-  hn::Store(score, d, modes.score.data() + pixel);
-  hn::Store(support, d, modes.support.data() + pixel);
-  hn::Store(hn::IfThenElseZero(hn::Gt(weights, zero), hn::Div(spread2, weights)), d,
-            modes.spread2.data() + pixel);
-  hn::Store(hn::ConvertTo(hn::RebindToSigned<Floats>(), voters), hn::RebindToSigned<Floats>(),
-            modes.voters.data() + pixel);
+  });
+  const auto put = [&](FloatVec value, AlignedFloats& row)
+                       HWY_ATTR { hn::Store(hn::IfThenElseZero(is_some, value), d, row.data() + pixel); };
+  put(step, mode.step), put(score, mode.score), put(support, mode.support);
+  put(hn::IfThenElseZero(hn::Gt(weights, zero), hn::Div(spread2, weights)), mode.spread2);
+  hn::Store(hn::ConvertTo(di, hn::IfThenElseZero(is_some, voters)), di, mode.voters.data() + pixel);
 }
 
-HWY_INLINE FloatVec secondOf(const Ballot& ballot, float sigma, FloatVec step, FloatVec best_index) {
-  FloatVec second = set(0.0F);
-  for (std::size_t j = 0; j < ballot.size(); ++j) {
-    const auto apart = hn::Ge(hn::Abs(hn::Sub(ballot.step(j), step)), set(3 * sigma));
-    const auto other = hn::Ne(best_index, set(static_cast<float>(j)));
-    second = hn::Max(second, hn::IfThenElseZero(hn::And(apart, other), ballot.count(j)));
+// Near a mode, or the peak that it began at, there is no other.
+HWY_INLINE void leaveOut(Ballot& ballot, float sigma, FloatVec step, FloatVec index) {
+  for (std::size_t i = 0; i < ballot.size(); ++i) {
+    const auto is_apart = hn::Ge(hn::Abs(hn::Sub(ballot.step(i), step)), set(3 * sigma));
+    const auto is_other = hn::Ne(index, set(static_cast<float>(i)));
+    ballot.setCount(i, hn::IfThenElseZero(hn::And(is_apart, is_other), ballot.count(i)));
   }
-  return second;
 }
 
-HWY_INLINE void clear(std::size_t pixel, ModeRows& modes) {
-  for (AlignedFloats* row : {&modes.step, &modes.score, &modes.support, &modes.spread2, &modes.second})
+HWY_INLINE void clear(std::size_t pixel, ModeRows& mode) {
+  for (AlignedFloats* row : {&mode.step, &mode.score, &mode.support, &mode.second, &mode.spread2})
     hn::Store(set(0.0F), Floats(), row->data() + pixel);
   const hn::RebindToSigned<Floats> di;
-  hn::Store(hn::Zero(di), di, modes.voters.data() + pixel);
+  hn::Store(hn::Zero(di), di, mode.voters.data() + pixel);
 }
 
-void count(std::span<const VoterRows> voters, std::size_t partners, float sigma, std::size_t pixels,
-           ModeRows& modes) {
+void count(std::span<const VoterRows> rows, std::size_t partners, float sigma, std::size_t pixels,
+           std::span<ModeRows> modes) {
+  const Floats d;
   const Gaussian gaussian(sigma);
-  Ballot ballot(modes.memory.data());
-  for (std::size_t i = 0; i < pixels; i += hn::Lanes(Floats())) {
-    ballot.fill(voters, partners, i);
-    if (ballot.size() == 0) {
-      clear(i, modes);
-      continue;
+  Ballot ballot(rows.size());
+  for (std::size_t pixel = 0; pixel < pixels; pixel += hn::Lanes(d)) {
+    ballot.fill(rows, partners, pixel);
+    if (ballot.hasLists())
+      countLists(ballot, gaussian);
+    else
+      countPairs(ballot, gaussian);
+    Candidate best = bestOf(ballot);
+    for (ModeRows& mode : modes) {
+      const auto is_some = hn::Gt(best.count, set(0.0F));
+      if (hn::AllFalse(d, is_some)) {
+        clear(pixel, mode);
+        continue;
+      }
+      const FloatVec step = shifted(ballot, gaussian, best.step);
+      store(ballot, gaussian, sigma, step, is_some, pixel, mode);
+      leaveOut(ballot, sigma, step, best.index);
+      best = bestOf(ballot);
+      hn::Store(best.count, d, mode.second.data() + pixel);
     }
-    countAll(ballot, gaussian);
-    const Candidate best = bestOf(ballot);
-    const FloatVec step = shifted(ballot, gaussian, best.step);
-    describe(ballot, gaussian, sigma, step, i, modes);
-    hn::Store(secondOf(ballot, sigma, step, best.index), Floats(), modes.second.data() + i);
   }
 }
 
@@ -189,13 +244,14 @@ namespace vdbfuse::stereo {
 
 HWY_EXPORT(count);
 
-void countVotes(std::span<const VoterRows> voters, std::size_t partners, float sigma, std::size_t pixels,
-                ModeRows& modes) {
-  for (AlignedFloats* row : {&modes.step, &modes.score, &modes.support, &modes.spread2, &modes.second})
-    row->resize(pixels);
-  modes.voters.resize(pixels);
-  modes.memory.resize(4 * kVectorLanes * voters.size());
-  HWY_DYNAMIC_DISPATCH(count)(voters, partners, sigma, pixels, modes);
+void countVotes(std::span<const VoterRows> rows, std::size_t partners, float sigma, std::size_t pixels,
+                std::span<ModeRows> modes) {
+  for (ModeRows& mode : modes) {
+    for (AlignedFloats* row : {&mode.step, &mode.score, &mode.support, &mode.second, &mode.spread2})
+      row->resize(pixels);
+    mode.voters.resize(pixels);
+  }
+  HWY_DYNAMIC_DISPATCH(count)(rows, partners, sigma, pixels, modes);
 }
 
 }  // namespace vdbfuse::stereo

@@ -101,10 +101,8 @@ void sweepLists(benchmark::State& state, std::int64_t target) {
   const SweepRange range = rangeOf(64);
   SweepMemory memory;
   PeakLists lists;
-  lists.partners = 1;
   for (auto _ : state) {
-    lists.counts.assign(pair.tile.at(0, pair.tile.height), 0);
-    lists.peaks.resize(lists.counts.size() * kMostPeaks);
+    lists.clear(pair.tile, 1);
     sweepForAll(pair.tile, pair.partner[0], pair.motion, range, pair.limits, 0, memory, lists);
   }
   count(state, "NCC/s", windows(pair, range));
@@ -122,10 +120,11 @@ void votes(benchmark::State& state, std::int64_t target) {
       rows.score.push_back(static_cast<float>(random.uniform(-0.3, 1)));
       rows.curvature.push_back(static_cast<float>(random.uniform(0.05, 1)));
     }
-    voters.push_back({rows.step.data(), rows.score.data(), rows.curvature.data()});
+    voters.push_back(
+        {rows.step.data(), rows.score.data(), rows.curvature.data(), static_cast<int>(voters.size())});
   }
   ModeRows modes;
-  for (auto _ : state) countVotes(voters, kPartners, 2, kPixels, modes);
+  for (auto _ : state) countVotes(voters, kPartners, 2, kPixels, {&modes, 1});
   count(state, "pixels/s", kPixels);
 }
 

@@ -116,8 +116,11 @@ TEST(Stereo, GainAndBiasOfEachPhotographChangeNothing) {
   for (std::size_t i = 0; i < 5; ++i)
     changed.push_back(photographOf(kScene, photographs()[i], gains[i], biases[i]));
   const StereoResult result = match(changed);
-  for (std::size_t i = 0; i < 5; ++i)
-    EXPECT_GT(shareNear(result.views[i], plainResult().views[i].view.map.depth, 0.1), 0.97);
+  // Up to the rounding of brightness to 2040 levels, of which half the gain leaves half.
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_GT(shareNear(result.views[i], plainResult().views[i].view.map.depth, 0.1), 0.95);
+    EXPECT_GT(shareNear(result.views[i], plainResult().views[i].view.map.depth, 0.5), 0.99);
+  }
 }
 
 TEST(Stereo, FaintTextureIsEnough) {

@@ -18,16 +18,19 @@ namespace vdbfuse {
 
 /// The depth map of one photograph. All images have its size.
 struct StereoView {
-  /// Depth; confidence in [0, 1]: the score of the depth divided by that of full agreement of all partners;
-  /// the picture (grey ones as three equal channels) and the mask of the photograph; alternatives where they
-  /// were asked for.
+  /// Depth; confidence in [0, 1]: the votes for the depth, of its partners and of the other views' depths,
+  /// divided by what they would be if all agreed fully; the picture (grey ones as three equal channels) and
+  /// the mask of the photograph; alternatives where they were asked for, as exact as a sweep at half the size
+  /// or less.
   View view;
   Image<float> second_best;           ///< confidence of the next best other depth, 0: none
   Image<std::uint8_t> voters;         ///< partners that agree with the depth
   std::vector<std::size_t> partners;  ///< numbers of the photographs it was matched with
   DepthInterval depths;               ///< that were looked at
-  double matching_error_px = 0;       ///< spread of the partners' votes, in pixels of the picture
-  NoiseLaw noise;                     ///< what that is as depth: quadratic
+  /// Spread of the partners' votes, in pixels of the partner with the widest baseline; 0: unknown
+  /// (Mode::Paper).
+  double matching_error_px = 0;
+  NoiseLaw noise;  ///< what that is as depth: quadratic
 };
 
 struct StereoResult {
