@@ -12,7 +12,7 @@ namespace vdbfuse::stereo {
 namespace {
 
 constexpr int kSmoothRadius = 4;
-constexpr float kSmoothScale = 1, kFirstSmoothScale = 8;  // pixels of the level
+constexpr float kSmoothScale = 1, kFirstSmoothScale = 4.5F;  // pixels of the level
 constexpr int kSmoothRounds = 4;
 
 // One row of the level without its pictures, for votes alone, at one inverse depth.
