@@ -39,8 +39,8 @@ void finishMesh(const ReconstructOptions& options, Reconstruction& result) {
 
 // The minimum of (1): the paper's section 3 from the depth maps on.
 void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
-                   const ReconstructOptions& options, const Progress& progress, StepTimer& timer,
-                   Reconstruction& result) {
+                   const ReconstructOptions& options, const std::vector<int>& reduction,
+                   const Progress& progress, StepTimer& timer, Reconstruction& result) {
   timer.start("agreement");
   ScalarGrid support = countAgreement(judged, frame, domain, progress);  // C(x), eq. (3)
 
@@ -57,8 +57,9 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   timer.start("cut");
   Labelling cut =
       cutCells(cells.octree, cells.tiles, cells.support, cells.sigma, cut_options, progress);  // (1)
-  const SpeckReport specks = removeSpecks(
-      cells.octree, cells.tiles, std::pow(result.calibration.noise_scale, 3), cut_options.border, cut.labels);
+  const SpeckReport specks =
+      removeSpecks(cells.octree, cells.tiles, std::pow(leastWidth(reduction, result.calibration, options), 3),
+                   cut_options.border, cut.labels);
   const CavityReport cavities =
       fillUnseenCavities(cells.octree, cells.tiles, sensorPositions(judged), cut_options.border, cut.labels);
 
@@ -81,6 +82,7 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
                                 cut_options.border,
                                 cavities,
                                 specks,
+                                surface.unresolved,
                                 surface.completion};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids = levelGrids(cells.octree, cells.sigma, "sigma", kUnknown);
@@ -173,7 +175,7 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
   if (options.method == Method::Tsdf) {
     fuseTsdf(judged, frame, domain, options, progress, timer, result);
   } else {
-    cutVisibility(judged, frame, domain, options, progress, timer, result);
+    cutVisibility(judged, frame, domain, options, scan.plan.reduction, progress, timer, result);
   }
   if (result.mesh.triangles.empty() && (options.trim > 0 || options.min_component > 0))
     throw Error("the result is empty: trim or min_component leaves nothing of the surface");

@@ -50,6 +50,7 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(options.max_level >= 0 && options.max_level <= 6, "max_level must lie in 0 ... 6");
   require(options.noise_scale >= 0, "noise_scale must be positive");
   require(options.noise_scale == 0 || !options.noise, "noise and noise_scale exclude each other");
+  require(options.window_px >= 0, "window_px must not be negative");
   require(options.prior_decay >= 0, "prior_decay must not be negative");
   require(options.thickness.value_or(0) >= 0, "thickness must not be negative");
   require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
@@ -169,6 +170,13 @@ CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFr
       options.lambda > 0 ? options.lambda : kLambdaPerVoxel / std::max(frame.voxel, calibration.noise_scale);
   cut.border = options.border.value_or(chooseBorder(judged, domain));
   return cut;
+}
+
+double leastWidth(const std::vector<int>& reduction, const CalibrationReport& calibration,
+                  const ReconstructOptions& options) {
+  // The spacing is that of images made smaller, the window that of the images before.
+  const int factor = reduction.empty() ? 1 : *std::max_element(reduction.begin(), reduction.end());
+  return std::max(calibration.noise_scale, options.window_px * calibration.point_spacing / factor);
 }
 
 EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& options) {

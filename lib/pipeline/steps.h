@@ -37,6 +37,11 @@ OctreeOptions octreeOptions(const GridFrame& frame, const CalibrationReport& cal
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
                       const CalibrationReport& calibration, const ReconstructOptions& options);
 
+/// Width of the smallest things that the depth maps can tell from nothing: the noise, or the window that a
+/// depth comes from. `reduction`: ScanPlan::reduction.
+double leastWidth(const std::vector<int>& reduction, const CalibrationReport& calibration,
+                  const ReconstructOptions& options);
+
 EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& options);
 
 std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged);

@@ -165,8 +165,10 @@ SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, 
     refine(judged, parts, smoothing, progress, field);
   }
   settleSides(field, may_change, parts.sides);
+  // Of pieces that were measured away settling leaves a voxel each.
+  const std::size_t unresolved = dropUnresolved(options.least_width, parts.sides);
   putBack(parts.sides, kPutBack * parts.voxel(), field);
-  return {gridOf({parts.sides.frame, parts.sides.blocks, std::move(field)}), report};
+  return {gridOf({parts.sides.frame, parts.sides.blocks, std::move(field)}), report, unresolved};
 }
 
 }  // namespace vdbfuse

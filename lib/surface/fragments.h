@@ -13,4 +13,9 @@ namespace vdbfuse {
 /// as in extractSurface(). Components that reach out of the blocks stay. Returns how many changed.
 std::size_t dropFragments(const std::vector<float>& invented, std::size_t most, BlockField& sides);
 
+/// Gives components that fit into a cube of `width` voxels the other side, joined as above: they are narrower
+/// than the grid can show, whereas a thin part is longer or hangs on something. Components that reach out of
+/// the blocks stay. Returns how many changed.
+std::size_t dropUnresolved(int width, BlockField& sides);
+
 }  // namespace vdbfuse

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -176,13 +177,24 @@ TEST(Reconstruct, TwelveCleanViewsWithNothingBehindAreNotEmpty) {
   EXPECT_NEAR(signedVolume(result.mesh) / (4.0 / 3 * M_PI * 0.125), 1, 0.05);
 }
 
+TEST(Reconstruct, SolidSmallerThanTheWindowOfADepthIsNotBelieved) {
+  const std::vector<View> views = test::sphereViews(12, 64);
+  ReconstructOptions options = coarse();
+  const Reconstruction all = run(views, options);
+  const double volume = signedVolume(all.mesh);
+  options.window_px = static_cast<int>(0.8 * std::cbrt(volume) / all.calibration.point_spacing);
+  EXPECT_EQ(run(views, options).mesh.triangles, all.mesh.triangles);
+  options.window_px = 2 * options.window_px;
+  EXPECT_THAT(messageOf<Error>([&] { run(views, options); }), HasSubstr("the result is empty"));
+}
+
 TEST(ReconstructOptions, EverythingThatIsWrongIsReported) {
   ReconstructOptions options;
   EXPECT_TRUE(validate(options).empty());
   options.voxel = -1, options.resolution = -1, options.domain = Box(), options.max_level = 7;
   options.noise_scale = NAN, options.outliers = 1.0, options.mu = -1, options.smoothing_voxels = 3;
-  options.tsdf.truncation = -1, options.evidence.visibility_prior = 0;
-  EXPECT_EQ(validate(options).size(), 11u);
+  options.tsdf.truncation = -1, options.evidence.visibility_prior = 0, options.window_px = -1;
+  EXPECT_EQ(validate(options).size(), 12u);
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ FieldOptions uncompleted(double smoothing) {
   FieldOptions options;
   options.smoothing_voxels = smoothing;
   options.completion.kind = CompletionOptions::Kind::None;
+  options.least_width = 0;
   return options;
 }
 

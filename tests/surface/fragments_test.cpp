@@ -58,5 +58,29 @@ TEST(DropFragments, JoinsInsidesAcrossEdgesAndOutsidesOnlyAcrossFaces) {
   }
 }
 
+TEST(DropUnresolved, TurnsWhatFitsIntoACubeOfTwoVoxelsAndNothingLonger) {
+  for (const float side : {1.0f, -1.0f}) {
+    Sides s;
+    s.set({0, 0, 0}, {15, 15, 15}, side);
+    s.set({7, 7, 7}, {8, 8, 8}, -side);
+    s.set({3, 3, 3}, {3, 3, 3}, -side);
+    EXPECT_EQ(dropUnresolved(2, s.field), 2u);
+    for (const float value : s.field.values) ASSERT_EQ(value, side);
+    s.set({7, 7, 7}, {7, 7, 9}, -side);  // three voxels long
+    const std::vector<float> before = s.field.values;
+    EXPECT_EQ(dropUnresolved(2, s.field), 0u);
+    EXPECT_EQ(s.field.values, before);
+  }
+}
+
+TEST(DropUnresolved, LeavesAWireThatHangsTogetherByEdgesAndWhatReachesOutOfTheBlocks) {
+  Sides s;
+  for (int i = 4; i < 7; ++i) s.set({i, i, 8}, {i, i, 8}, -1);
+  s.set({0, 12, 12}, {0, 12, 12}, -1);
+  const std::vector<float> before = s.field.values;
+  EXPECT_EQ(dropUnresolved(2, s.field), 0u);
+  EXPECT_EQ(s.field.values, before);
+}
+
 }  // namespace
 }  // namespace vdbfuse

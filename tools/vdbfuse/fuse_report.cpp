@@ -59,6 +59,7 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"balloon", o.evidence.balloon},
             {"mask_error", o.evidence.mask_error},
             {"depth_prior", o.prior_decay},
+            {"window_px", o.window_px},
             {"trim", o.trim},
             {"min_component", o.min_component},
             {"simplify", o.simplify},
@@ -154,7 +155,8 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
                 {"cavities_filled", result.cut->cavities.filled},
                 {"cavities_volume", result.cut->cavities.volume},
                 {"specks_removed", result.cut->specks.removed},
-                {"specks_volume", result.cut->specks.volume}};
+                {"specks_volume", result.cut->specks.volume},
+                {"unresolved_removed", result.cut->unresolved}};
   }
   if (result.cut && result.cut->completion) {
     const CompletionReport& c = *result.cut->completion;

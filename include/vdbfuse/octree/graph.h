@@ -72,8 +72,10 @@ struct SpeckReport {
 };
 
 /// Turns solid components smaller than `least_volume` (length³) into empty ones, unless they touch a border
-/// beyond which there is matter, or nothing is said. Where voxels are smaller than the noise, the cut finds
-/// single voxels of the other sign within it; nothing of that size can be told from noise.
+/// beyond which there is matter, or nothing is said. Where voxels are smaller than the
+/// noise, the cut finds single voxels of the other sign within it, and depths from a window of pixels show
+/// nothing smaller than that: nothing of that size can be told from an error. A component is joined across
+/// faces: what hangs on by an edge alone goes.
 SpeckReport removeSpecks(const Octree& octree, const CellTiles& tiles, double least_volume, Border border,
                          std::vector<CellLabel>& labels);
 

@@ -62,6 +62,9 @@ struct ReconstructOptions {
   std::optional<double>
       outliers;              ///< outlier share, the same for every pixel; default: judged pixel by pixel
   double prior_decay = 0.0;  ///< τ of the depth prior (SensorModel::prior_decay), length; 0: flat
+  /// Side of the square of pixels that each depth comes from: solid components that hold less than a cube of
+  /// that width are not believed. 0: every pixel measures a point of its own.
+  int window_px = 0;
   JudgeOptions judge;
 
   // The energy.
@@ -125,7 +128,8 @@ struct CutReportSummary {
   double thickness = 0;  ///< EvidenceOptions::thickness; 0: off
   Border border = Border::Outside;
   CavityReport cavities;
-  SpeckReport specks;  ///< smaller than a cube of the noise
+  SpeckReport specks;          ///< smaller than a cube of the noise, or of the window
+  std::size_t unresolved = 0;  ///< SurfaceField::unresolved
   /// Energy and gap of the completed parts; nothing when they were left as the cut made them.
   std::optional<CompletionReport> completion;
 };

@@ -48,11 +48,14 @@ struct FieldOptions {
   /// Fewer agreeing views than this do not support a surface.
   float supported = 0.3f;
   CompletionOptions completion;
+  /// Components that fit into a cube of so many voxels go: narrower than the grid can show. 0: none.
+  int least_width = 2;
 };
 
 struct SurfaceField {
   ScalarGrid distance;
   std::optional<CompletionReport> completion;
+  std::size_t unresolved = 0;  ///< components that went because they were narrower than the grid shows
 };
 
 /// Grid "surface" on the finest voxels around the boundary between the labels; kUnknown further away. Signed
@@ -61,7 +64,8 @@ struct SurfaceField {
 /// weighted by reliability, incidence and precision; measured once more at the surface that this gives, and
 /// smoothed as far as the noise asks for. Elsewhere the distance of the completed surface. Signs begin as the
 /// labels; where something was measured or completed they follow the distance as long as that changes
-/// neither components nor handles.
+/// neither components nor handles. Then components below the least width go: of a piece that the distances
+/// deny, a voxel is left.
 SurfaceField signedField(const JudgedViews& judged, const LabelledCells& cells, const ScalarGrid& support,
                          const FieldOptions& options = {}, const Progress& progress = {});
 
