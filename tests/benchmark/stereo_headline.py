@@ -81,8 +81,8 @@ def main():
     parser.add_argument("outdir", type=Path)
     parser.add_argument("--figure", type=Path)
     parser.add_argument("--temple", type=Path, default=Path(os.environ.get("VDBFUSE_DATA", "data")) / "temple-sparse-ring")
-    parser.add_argument("--balloons", default="0.005,0.01,0.02,0.05,0.1")
-    parser.add_argument("--temple-balloons", default="0.02,0.05,0.1")
+    parser.add_argument("--balloons", default="0.0005,0.002,0.004,0.0045,0.005,0.02,0.1")
+    parser.add_argument("--temple-balloons", default="0.02,0.03,0.05")
     arguments = parser.parse_args()
     arguments.outdir.mkdir(parents=True, exist_ok=True)
     figure = arguments.figure or arguments.outdir / "figure"
