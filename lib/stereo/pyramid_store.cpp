@@ -20,15 +20,18 @@ std::size_t bytesOf(const Pyramid& pyramid) {
 }  // namespace
 
 PyramidStore::PyramidStore(const PhotographSequence& photographs, const StereoOptions& options)
-    : photographs_(photographs), options_(options) {}
+    : photographs_(photographs) {
+  for (std::size_t i = 0; i < photographs.size(); ++i) {
+    const Pinhole& camera = photographs.header(i).camera;
+    levels_ = std::max(levels_, levelsFor(camera.width, camera.height, options));
+  }
+}
 
 std::shared_ptr<const Pyramid> PyramidStore::get(std::size_t index) {
   recent_.remove(index);
   recent_.push_front(index);
   if (const auto found = kept_.find(index); found != kept_.end()) return found->second;
-  const Photograph photograph = photographs_.load(index);
-  auto pyramid = std::make_shared<const Pyramid>(
-      picturePyramid(photograph, levelsFor(photograph.camera.width, photograph.camera.height, options_)));
+  auto pyramid = std::make_shared<const Pyramid>(picturePyramid(photographs_.load(index), levels_));
   bytes_ += bytesOf(*pyramid);
   kept_[index] = pyramid;
   while (bytes_ > kMostBytes && recent_.size() > 1) {

@@ -15,7 +15,8 @@ namespace vdbfuse::stereo {
 
 using Pyramid = std::vector<PictureLevel>;
 
-/// Not for several threads.
+/// All have the levels that matchView() needs for the largest photograph, which may meet any other. Not for
+/// several threads.
 class PyramidStore {
  public:
   PyramidStore(const PhotographSequence& photographs, const StereoOptions& options);
@@ -24,7 +25,7 @@ class PyramidStore {
 
  private:
   const PhotographSequence& photographs_;
-  const StereoOptions& options_;
+  int levels_ = 1;
   std::size_t bytes_ = 0;
   std::list<std::size_t> recent_;  // last used first
   std::unordered_map<std::size_t, std::shared_ptr<const Pyramid>> kept_;

@@ -133,6 +133,18 @@ TEST(Stereo, FaintTextureIsEnough) {
   for (const StereoView& view : match(faint).views) EXPECT_EQ(depthsIn(view), 0u);
 }
 
+// A pyramid has as many levels as the largest photograph asks for.
+TEST(Stereo, PhotographsOfDifferentSizesAreMatched) {
+  std::vector<PhotographHeader> cameras = headers(3);
+  Pinhole& large = cameras[1].camera;
+  const double factor = 6;
+  large.width *= 6, large.height *= 6, large.fx *= factor, large.fy *= factor;
+  large.cx = (large.cx + 0.5) * factor - 0.5, large.cy = (large.cy + 0.5) * factor - 0.5;
+  const StereoResult result = match(photographsOf(kScene, cameras));
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_GT(shareNear(result.views[i], trueDepthOf(kScene, cameras[i]), 1), 0.8) << i;
+}
+
 TEST(Stereo, TwoPhotographsAreEnough) {
   const StereoResult result = match({photographs()[2], photographs()[3]});
   for (std::size_t i = 0; i < 2; ++i) {
