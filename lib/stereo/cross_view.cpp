@@ -2,8 +2,6 @@
 #include "stereo/cross_view.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "stereo/sweep_kernels.h"
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "stereo/matching_constants.h"
 #include "stereo/reference_level.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/geometry/rigid_transform.h"
@@ -19,12 +20,12 @@ struct PosedPyramid {
 
 struct MatchInput {
   PosedPyramid reference;
-  std::vector<PosedPyramid> partners;
+  std::vector<PosedPyramid> partners;  ///< with as many levels as the reference at least
   DepthInterval depths;
 };
 
 /// Step of a sweep, in pixels of its level in the widest partner: as fine as mode `paper`.
-inline constexpr float kExactStep = 0.5F;
+inline constexpr auto kExactStep = static_cast<float>(kPaperStep);
 
 struct Stage {
   ReferenceLevel reference;

@@ -52,14 +52,15 @@ ViewMatch matchView(const MatchInput& input, const StereoOptions& options) {
   const Pinhole& camera = input.reference.levels->front().camera;
   const int first = levelsFor(camera.width, camera.height, options) - 1;
   ViewMatch match;
-  const Stage coarsest = stageOf(input, first, options, kFirstThreshold);
-  match.modes = planeSweep(coarsest, firstSweep(input, coarsest, options));
+  Stage stage = stageOf(input, first, options, kFirstThreshold);
+  match.modes = planeSweep(stage, firstSweep(input, stage, options));
   match.best = match.modes.front();
   if (options.hypotheses == 1) match.modes.clear();
   if (options.surface_sweeps == 0) return match;
+  stage.limits.threshold = static_cast<float>(kSurfaceThreshold);
   for (int level = first; level >= 0; --level) {
-    const Stage stage = stageOf(input, level, options, kSurfaceThreshold);
     if (level < first) {
+      stage = stageOf(input, level, options, kSurfaceThreshold);
       match.best = enlarged(match.best, stage);
       for (DepthLayer& mode : match.modes) mode = enlarged(mode, stage);
     }

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/stereo/stereo.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
 #include <utility>
 
 #include "stereo/cross_view.h"
 #include "stereo/match_view.h"
-#include "stereo/matching_constants.h"
 #include "stereo/other_voters.h"
 #include "stereo/paper.h"
 #include "stereo/pyramid_store.h"
@@ -46,8 +44,7 @@ class FastStereo {
     match();
     if (options_.cross_check == StereoOptions::CrossCheck::On && options_.surface_sweeps > 0) {
       timer.start("cross-check");
-      // Ever nearer: what other views say has brought the surface close.
-      for (const int reach : {4, 3, 2}) crossCheck(reach);
+      crossCheck();
     }
     timer.start("write");
     StereoResult result;
@@ -73,11 +70,16 @@ class FastStereo {
     }
   }
 
-  void crossCheck(int reach) {
-    if (others_.empty())
-      others_ =
-          choosePartners(plan_.headers, plan_.depths, {.count = 6, .min_angle_deg = 0, .max_angle_deg = 60});
-    ProgressStep step(progress_, "cross-checking", plan_.headers.size());
+  void crossCheck() {
+    others_ =
+        choosePartners(plan_.headers, plan_.depths, {.count = 6, .min_angle_deg = 0, .max_angle_deg = 60});
+    // Ever nearer: what other views say has brought the surface close.
+    constexpr std::array kReaches = {4, 3, 2};
+    ProgressStep step(progress_, "cross-checking", kReaches.size() * plan_.headers.size());
+    for (const int reach : kReaches) crossCheck(reach, step);
+  }
+
+  void crossCheck(int reach, ProgressStep& step) {
     std::vector<DepthLayer> checked;
     for (std::size_t i = 0; i < plan_.headers.size(); ++i) {
       const PhotographHeader& own = plan_.headers[i];
@@ -114,7 +116,9 @@ StereoResult paperStereo(const PhotographSequence& photographs, const StereoOpti
   StepTimer timer;
   timer.start("match");
   StereoResult result;
-  ProgressStep step(progress, "matching", plan.headers.size());
+  std::size_t rows = 0;
+  for (const PhotographHeader& header : plan.headers) rows += static_cast<std::size_t>(header.camera.height);
+  ProgressStep step(progress, "matching", rows);
   for (std::size_t i = 0; i < plan.headers.size(); ++i) {
     Photograph reference = photographs.load(i);
     std::vector<Photograph> partners;
@@ -122,14 +126,14 @@ StereoResult paperStereo(const PhotographSequence& photographs, const StereoOpti
     PaperOptions paper;
     paper.window_px = options.window_px, paper.hypotheses = options.hypotheses;
     paper.min_confidence = options.min_confidence;
-    StereoView found = paperDepthMap(reference, partners, plan.depths[i], paper);
+    StereoView found = paperDepthMap(reference, partners, plan.depths[i], paper,
+                                     [&](std::size_t done) { step.advance(done); });
     StereoView view = viewWithoutDepths(plan, i, std::move(reference));
     view.view.map.depth = std::move(found.view.map.depth);
     view.view.map.confidence = std::move(found.view.map.confidence);
     view.view.map.alternatives = std::move(found.view.map.alternatives);
     view.second_best = std::move(found.second_best), view.voters = std::move(found.voters);
     result.views.push_back(std::move(view));
-    step.advance();
   }
   result.steps = timer.finish();
   return result;

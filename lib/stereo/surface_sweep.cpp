@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "stereo/matching_constants.h"
 #include "stereo/other_voters.h"
 #include "stereo/plane_fit.h"
 #include "stereo/vote_kernels.h"
@@ -68,7 +67,7 @@ DepthLayer agreed(const Stage& stage, const DepthLayer& own, const std::vector<T
 
 DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
                         const std::vector<Testimony>& others) {
-  const float step = kExactStep * stage.pixel, step_px = kExactStep;
+  const float step = kExactStep * stage.pixel;
   const SweepRange range{-step * static_cast<float>(reach), step, 2 * reach + 1};
   const PlaneMap planes = planesOf(stage, before);
   const Guide guide = guideOf(before, planes);
@@ -92,8 +91,7 @@ DepthLayer surfaceSweep(const Stage& stage, const DepthLayer& before, int reach,
     OtherVoters other_rows;
     addOtherVoters(others, planes, tile, range, other_rows, rows);
     ModeRows modes;
-    countVotes(rows, best.size(), static_cast<float>(kVoteSigma) * kExactStep / step_px,
-               tile.at(0, tile.height), {&modes, 1});
+    countVotes(rows, best.size(), static_cast<float>(kVoteSigma), tile.at(0, tile.height), {&modes, 1});
     forEachWindow(tile, [&](std::size_t pixel, int x, int y) {
       const float score = modes.score[pixel] + modes.support[pixel];
       if (score == 0) return;

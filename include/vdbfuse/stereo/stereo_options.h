@@ -28,9 +28,11 @@ struct StereoOptions {
   int hypotheses = 1;
   /// Pixels with less confidence have no depth. In [0, 1].
   double min_confidence = 0;
-  /// Of Mode::Fast: sweeps along the slant of what was found before, at full resolution. 0: none.
+  /// Of Mode::Fast: sweeps along the slant of what was found before, at full resolution (coarser levels, and
+  /// photographs so small that they have but one, take what they need). 0: none, and planes are swept at full
+  /// resolution, as finely and with the votes of Mode::Paper.
   int surface_sweeps = 2;
-  /// Of Mode::Fast: a last pass that weighs the depth maps against each other.
+  /// Of Mode::Fast, with surface sweeps: last passes that weigh the depth maps against each other.
   enum class CrossCheck { On, Off } cross_check = CrossCheck::On;
 };
 
