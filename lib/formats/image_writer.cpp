@@ -74,13 +74,6 @@ Pinhole commonPinhole(const ViewSequence& views, const std::string& format) {
   return camera;
 }
 
-Eigen::Matrix3d intrinsicMatrix(const Pinhole& camera) {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
-  matrix(0, 0) = camera.fx, matrix(1, 1) = camera.fy;
-  matrix(0, 2) = camera.cx, matrix(1, 2) = camera.cy;
-  return matrix;
-}
-
 std::string exactText(double value) {
   char buffer[32];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value);

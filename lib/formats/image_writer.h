@@ -35,9 +35,6 @@ Pinhole commonPinhole(const ViewSequence& views, const std::string& format);
 /// The view's camera. Throws InvalidArgument when it is no pinhole or is distorted.
 Pinhole plainPinhole(const ViewHeader& header, const std::string& format);
 
-/// 3×3.
-Eigen::Matrix3d intrinsicMatrix(const Pinhole& camera);
-
 /// Rows of numbers that read back as the same.
 std::string matrixText(const Eigen::MatrixXd& matrix);
 

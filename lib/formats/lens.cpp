@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 #include "vdbfuse/geometry/distortion.h"
 
 namespace vdbfuse {
@@ -113,18 +113,16 @@ void undistort(Photograph& photograph, const Lens& lens) {
   Image<Rgb8> color(has_color ? width : 0, has_color ? height : 0);
   Image<std::uint8_t> mask(width, height, std::uint8_t{0});
   constexpr std::size_t kRows = 16;
-  parallelFor(static_cast<std::size_t>(height), kRows, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < width; ++x) {
-        const std::optional<Eigen::Vector2d> at = sourceOf(lens, target, x, y);
-        if (!isInside(lens.camera, at)) continue;
-        const Footing footing(*at, width, height);
-        brightness(x, y) = static_cast<float>(footing.mix(photograph.brightness));
-        if (has_color) color(x, y) = mixedColor(photograph.color, footing);
-        mask(x, y) = has_mask ? photograph.mask(footing.u < 0.5 ? footing.x0 : footing.x1,
-                                                footing.v < 0.5 ? footing.y0 : footing.y1)
-                              : 255;
-      }
+  forEachRow(height, kRows, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const std::optional<Eigen::Vector2d> at = sourceOf(lens, target, x, y);
+      if (!isInside(lens.camera, at)) continue;
+      const Footing footing(*at, width, height);
+      brightness(x, y) = static_cast<float>(footing.mix(photograph.brightness));
+      if (has_color) color(x, y) = mixedColor(photograph.color, footing);
+      mask(x, y) = has_mask ? photograph.mask(footing.u < 0.5 ? footing.x0 : footing.x1,
+                                              footing.v < 0.5 ? footing.y0 : footing.y1)
+                            : 255;
     }
   });
   photograph.brightness = std::move(brightness);

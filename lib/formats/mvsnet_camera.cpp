@@ -7,6 +7,7 @@
 #include "formats/image_writer.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/geometry/intrinsics.h"
 
 namespace vdbfuse {
 namespace {

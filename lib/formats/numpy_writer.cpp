@@ -2,6 +2,7 @@
 #include "formats/image_writer.h"
 #include "formats/numpy.h"
 #include "io/npz_writer.h"
+#include "vdbfuse/geometry/intrinsics.h"
 
 namespace vdbfuse {
 namespace {

@@ -11,6 +11,7 @@
 #include "io/file_bytes.h"
 #include "io/text_cursor.h"
 #include "io/text_lines.h"
+#include "vdbfuse/geometry/intrinsics.h"
 
 namespace vdbfuse {
 namespace {

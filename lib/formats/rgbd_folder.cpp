@@ -11,6 +11,7 @@
 #include "io/folder.h"
 #include "io/text_lines.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/geometry/intrinsics.h"
 
 namespace vdbfuse {
 namespace {

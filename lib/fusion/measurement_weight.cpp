@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fusion/weight_kernels.h"
-#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 #include "vdbfuse/geometry/projection.h"
 
 namespace vdbfuse {
@@ -20,17 +20,10 @@ constexpr std::array<float, 3> kRamp = {1 / 7.0f, 3 / 7.0f, 5 / 7.0f};  // at an
 constexpr float kLeastReliable = 0.25f;
 constexpr std::size_t kRowsPerTask = 32;
 
-template <class Visit>
-void forEachRow(int height, const Visit& visit) {
-  parallelFor(static_cast<std::size_t>(height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) visit(static_cast<int>(y));
-  });
-}
-
 // weights(x, y) *= factor(x, y).
 template <class Factor>
 void multiply(Image<float>& weights, const Factor& factor) {
-  forEachRow(weights.height(), [&](int y) {
+  forEachRow(weights.height(), kRowsPerTask, [&](int y) {
     float* row = weights.row(y);
     for (int x = 0; x < weights.width(); ++x) row[x] *= factor(x, y);
   });
@@ -65,7 +58,7 @@ Image<float> weighRows(const Image<float>& depth, RowWeighting weighting, const 
   if (has_silhouette) bands = edgeBands(depth, edge);
   weighting.ramp = kRamp;
   Image<float> weights(width, height);
-  forEachRow(height, [&](int y) {
+  forEachRow(height, kRowsPerTask, [&](int y) {
     RowWeighting row = weighting;
     if (bands) {
       row.bands = {bands->at.row(y), bands->within_one.row(y), bands->within_two.row(y)};

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "stereo/matching_constants.h"
+#include "vdbfuse/base/rows.h"
 
 namespace vdbfuse::stereo {
 namespace {
@@ -28,20 +29,17 @@ ImageMotion motionOf(const MatchInput& input, std::size_t partner, std::size_t l
 void leaveOutBeside(const Box& box, const Pinhole& camera, const RigidTransform& world_from_camera,
                     Image<float>& inverse_spread) {
   const Eigen::Vector3d eye = world_from_camera.translation();
-  parallelFor(static_cast<std::size_t>(camera.height), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < camera.width; ++x) {
-        if (inverse_spread(x, y) == 0) continue;
-        const Eigen::Vector3d ray = world_from_camera.linear() * unproject(camera, x, y, 1.0);
-        double from = 0, to = std::numeric_limits<double>::infinity();
-        for (int axis = 0; axis < 3; ++axis) {
-          const double a = (box.min()[axis] - eye[axis]) / ray[axis],
-                       b = (box.max()[axis] - eye[axis]) / ray[axis];
-          from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
-        }
-        if (!(from <= to)) inverse_spread(x, y) = 0;
+  forEachRow(camera.height, 16, [&](int y) {
+    for (int x = 0; x < camera.width; ++x) {
+      if (inverse_spread(x, y) == 0) continue;
+      const Eigen::Vector3d ray = world_from_camera.linear() * unproject(camera, x, y, 1.0);
+      double from = 0, to = std::numeric_limits<double>::infinity();
+      for (int axis = 0; axis < 3; ++axis) {
+        const double a = (box.min()[axis] - eye[axis]) / ray[axis],
+                     b = (box.max()[axis] - eye[axis]) / ray[axis];
+        from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
       }
+      if (!(from <= to)) inverse_spread(x, y) = 0;
     }
   });
 }

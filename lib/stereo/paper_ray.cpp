@@ -5,14 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdbfuse/geometry/intrinsics.h"
+
 namespace vdbfuse::stereo::paper {
 namespace {
-
-Eigen::Matrix3d intrinsics(const Pinhole& camera) {
-  Eigen::Matrix3d k;
-  k << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-  return k;
-}
 
 // Pixels per unit of inverse depth; 0 where the partner does not see the point.
 double speed(const RayImage& ray, const Pinhole& partner, double x, double y, double w) {
@@ -45,8 +41,8 @@ double greatestSpeed(const PhotographHeader& reference, const PhotographHeader& 
 RayImage rayImage(const PhotographHeader& reference, const PhotographHeader& partner) {
   const RigidTransform partner_from_reference =
       partner.world_from_camera.inverse() * reference.world_from_camera;
-  const Eigen::Matrix3d k = intrinsics(partner.camera);
-  return {k * partner_from_reference.linear() * intrinsics(reference.camera).inverse(),
+  const Eigen::Matrix3d k = intrinsicMatrix(partner.camera);
+  return {k * partner_from_reference.linear() * intrinsicMatrix(reference.camera).inverse(),
           k * partner_from_reference.translation()};
 }
 

@@ -5,23 +5,16 @@
 #include <array>
 #include <cmath>
 
-#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 
 namespace vdbfuse::stereo {
 namespace {
 
 constexpr std::size_t kRows = 64;  // of a chunk
 
-template <class Body>
-void forEachRow(int height, const Body& body) {
-  parallelFor(static_cast<std::size_t>(height), kRows, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
-  });
-}
-
 Image<std::uint16_t> wholeNumbers(const Image<float>& brightness) {
   Image<std::uint16_t> value(brightness.width(), brightness.height());
-  forEachRow(value.height(), [&](int y) {
+  forEachRow(value.height(), kRows, [&](int y) {
     std::transform(brightness.row(y), brightness.row(y) + value.width(), value.row(y), [](float b) {
       return static_cast<std::uint16_t>(std::clamp(b, 0.0F, 1.0F) * kWhite + 0.5F);
     });
@@ -40,7 +33,7 @@ int smoothed(int a, int b, int c, int d) { return a + 3 * (b + c) + d; }
 
 Image<std::uint16_t> halved(const Image<std::uint16_t>& full) {
   Image<std::uint16_t> half((full.width() + 1) / 2, (full.height() + 1) / 2);
-  forEachRow(half.height(), [&](int y) {
+  forEachRow(half.height(), kRows, [&](int y) {
     const std::array<int, 4> rows = sources(y, full.height());
     const auto column = [&](int x) {
       return smoothed(full(x, rows[0]), full(x, rows[1]), full(x, rows[2]), full(x, rows[3]));
@@ -57,7 +50,7 @@ Image<std::uint16_t> halved(const Image<std::uint16_t>& full) {
 Image<std::uint8_t> halvedMask(const Image<std::uint8_t>& full) {
   if (full.empty()) return {};
   Image<std::uint8_t> half((full.width() + 1) / 2, (full.height() + 1) / 2);
-  forEachRow(half.height(), [&](int y) {
+  forEachRow(half.height(), kRows, [&](int y) {
     for (int x = 0; x < half.width(); ++x) {
       const int right = std::min(2 * x + 1, full.width() - 1), below = std::min(2 * y + 1, full.height() - 1);
       const bool used = full(2 * x, 2 * y) && full(right, 2 * y) && full(2 * x, below) && full(right, below);
@@ -69,7 +62,7 @@ Image<std::uint8_t> halvedMask(const Image<std::uint8_t>& full) {
 
 Image<std::uint64_t> quadsOf(const Image<std::uint16_t>& value) {
   Image<std::uint64_t> quads(value.width(), value.height());
-  forEachRow(quads.height(), [&](int y) {
+  forEachRow(quads.height(), kRows, [&](int y) {
     const std::uint16_t* upper = value.row(y);
     const std::uint16_t* lower = value.row(std::min(y + 1, value.height() - 1));
     const auto pair = [&](const std::uint16_t* row, int x) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 
 namespace vdbfuse::stereo {
 namespace {
@@ -145,15 +146,12 @@ void leaveOutRims(ReferenceLevel& level) {
   const PictureLevel& picture = *level.picture;
   const int radius = level.radius;
   const double area = (2.0 * radius + 1) * (2.0 * radius + 1);
-  parallelFor(static_cast<std::size_t>(picture.camera.height), 32, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const int y = static_cast<int>(row);
-      for (int x = radius; x < picture.camera.width - radius; ++x) {
-        float& inverse_spread = level.inverse_spread(x, y);
-        if (inverse_spread == 0) continue;
-        const auto inverse = static_cast<double>(inverse_spread);
-        if (innerSpread2(picture, x, y) / 9 < kLeastShare / (inverse * inverse * area)) inverse_spread = 0;
-      }
+  forEachRow(picture.camera.height, 32, [&](int y) {
+    for (int x = radius; x < picture.camera.width - radius; ++x) {
+      float& inverse_spread = level.inverse_spread(x, y);
+      if (inverse_spread == 0) continue;
+      const auto inverse = static_cast<double>(inverse_spread);
+      if (innerSpread2(picture, x, y) / 9 < kLeastShare / (inverse * inverse * area)) inverse_spread = 0;
     }
   });
 }

@@ -11,8 +11,8 @@ namespace vdbfuse::stereo {
 namespace {
 
 Rgb8 grey(float brightness) {
-  const auto value = static_cast<std::uint8_t>(std::lround(255 * std::clamp(brightness, 0.0F, 1.0F)));
-  return {value, value, value};
+  const std::uint8_t level = greyLevel(brightness);
+  return {level, level, level};
 }
 
 // Spread of the votes around their depth, in pixels of the widest partner: of all pixels the median, because

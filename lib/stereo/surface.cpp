@@ -8,21 +8,16 @@
 #include <vector>
 
 #include "stereo/bit_rows.h"
-#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 
 namespace vdbfuse::stereo {
 namespace {
 
-template <class Body>
-void forEachRow(int height, const Body& body) {
-  parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
-  });
-}
+constexpr std::size_t kRows = 16;  // of a chunk
 
 Image<float> halvedMean(const Image<float>& full) {
   Image<float> half((full.width() + 1) / 2, (full.height() + 1) / 2);
-  forEachRow(half.height(), [&](int y) {
+  forEachRow(half.height(), kRows, [&](int y) {
     for (int x = 0; x < half.width(); ++x) {
       float sum = 0, count = 0;
       for (int k = 0; k < 4; ++k) {
@@ -51,7 +46,7 @@ float linear(const Image<float>& half, Between x, Between y) {
 }
 
 void fillFrom(const Image<float>& half, Image<float>& full) {
-  forEachRow(full.height(), [&](int y) {
+  forEachRow(full.height(), kRows, [&](int y) {
     const Between rows = between(y, half.height());
     for (int x = 0; x < full.width(); ++x)
       if (full(x, y) == 0) full(x, y) = linear(half, between(x, half.width()), rows);
@@ -128,7 +123,7 @@ Guide guideOf(const DepthLayer& layer, const PlaneMap& planes) {
   Guide guide{planes.value, {width, height}};
   const auto is_agreed = [&](int x, int y) { return planes.share(x, y) >= kLeastShare; };
   const BitRows usable(width, height, [&](int x, int y) { return is_agreed(x, y) && layer.score(x, y) > 0; });
-  forEachRow(height, [&](int y) {
+  forEachRow(height, kRows, [&](int y) {
     for (int word = 0; word < BitRows::words(width); ++word) {
       std::uint64_t open = 0;
       for (int x = word * BitRows::kBits; x < std::min(width, (word + 1) * BitRows::kBits); ++x) {
@@ -146,7 +141,7 @@ Guide guideOf(const DepthLayer& layer, const PlaneMap& planes) {
 DepthLayer doubled(const DepthLayer& layer, int width, int height, float step) {
   DepthLayer result = emptyLayer(width, height);
   const Image<float>& half = layer.inverse_depth;
-  forEachRow(height, [&](int y) {
+  forEachRow(height, kRows, [&](int y) {
     const Between rows = between(y, half.height());
     for (int x = 0; x < width; ++x) {
       const Between columns = between(x, half.width());

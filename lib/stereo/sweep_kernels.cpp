@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stereo/sweep_kernels.h"
+
+#include "stereo/paper_ray.h"
 #include "stereo/sweep_spans.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -442,14 +444,8 @@ HWY_EXPORT(sweepAll);
 
 ImageMotion imageMotion(const Pinhole& reference, const RigidTransform& world_from_reference,
                         const Pinhole& partner, const RigidTransform& world_from_partner) {
-  const RigidTransform partner_from_reference = world_from_partner.inverse() * world_from_reference;
-  const auto matrix = [](const Pinhole& c) {
-    Eigen::Matrix3d k;
-    k << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1;
-    return k;
-  };
-  const Eigen::Matrix3d a = matrix(partner) * partner_from_reference.linear() * matrix(reference).inverse();
-  const Eigen::Vector3d b = matrix(partner) * partner_from_reference.translation();
+  const auto [a, b] =
+      paper::rayImage({"", reference, world_from_reference}, {"", partner, world_from_partner});
   ImageMotion motion;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) motion.a[static_cast<std::size_t>(3 * r + c)] = static_cast<float>(a(r, c));

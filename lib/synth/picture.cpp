@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "solid_texture.h"
-#include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 
 namespace vdbfuse::synth {
 namespace {
@@ -68,9 +68,8 @@ struct Camera {
 Image<Vector3d> expose(const Camera& camera) {
   Image<Vector3d> light(imageWidth(camera.view.projection), imageHeight(camera.view.projection),
                         Vector3d::Zero());
-  parallelFor(static_cast<std::size_t>(light.height()), 8, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-      for (int x = 0; x < light.width(); ++x) light(x, y) = camera.pixel(x, y);
+  forEachRow(light.height(), 8, [&](int y) {
+    for (int x = 0; x < light.width(); ++x) light(x, y) = camera.pixel(x, y);
   });
   return light;
 }

@@ -7,6 +7,7 @@
 #include "seen_surface.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/rows.h"
 
 namespace vdbfuse {
 namespace {
@@ -40,10 +41,9 @@ struct SyntheticScan::Impl {
   // Fills `seen(x, y, point)` for every pixel that sees something.
   template <class Seen>
   void look(std::size_t index, const Seen& seen) const {
-    parallelFor(static_cast<std::size_t>(options.height), 8, [&](std::size_t begin, std::size_t end) {
-      for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-        for (int x = 0; x < options.width; ++x)
-          if (const auto point = surface.see(synth::rayThrough(headers[index], x, y))) seen(x, y, *point);
+    forEachRow(options.height, 8, [&](int y) {
+      for (int x = 0; x < options.width; ++x)
+        if (const auto point = surface.see(synth::rayThrough(headers[index], x, y))) seen(x, y, *point);
     });
   }
 
