@@ -36,9 +36,7 @@ void writePicture(const std::filesystem::path& path, const Photograph& photograp
   if (!photograph.color.empty()) return writePng(path, photograph.color);
   const Image<float>& brightness = photograph.brightness;
   Image<std::uint8_t> grey(brightness.width(), brightness.height());
-  std::transform(brightness.begin(), brightness.end(), grey.begin(), [](float b) {
-    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(b, 0.0f, 1.0f)));
-  });
+  std::transform(brightness.begin(), brightness.end(), grey.begin(), greyLevel);
   writePng(path, grey);
 }
 

@@ -12,6 +12,7 @@
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/jpeg.h"
 #include "vdbfuse/io/png.h"
+#include "vdbfuse/sensor/photograph.h"
 
 namespace vdbfuse::io {
 namespace {
@@ -39,14 +40,6 @@ PictureKind requireKind(const fs::path& path) {
   return *kind;
 }
 
-template <class T>
-float brightnessOf(const Rgba<T>& pixel) {
-  // In whole numbers: equal parts give exactly their share of the largest.
-  const std::uint64_t sum =
-      299 * std::uint64_t{pixel[0]} + 587 * std::uint64_t{pixel[1]} + 114 * std::uint64_t{pixel[2]};
-  return static_cast<float>(static_cast<double>(sum) / (1000.0 * std::numeric_limits<T>::max()));
-}
-
 // The nearest of 256 steps.
 template <class T>
 std::uint8_t byteOf(T value) {
@@ -59,7 +52,9 @@ Picture pictureOf(const Image<Rgba<T>>& pixels, bool is_grey) {
   constexpr T kHalf = std::numeric_limits<T>::max() / 2;
   Picture picture;
   picture.brightness = Image<float>(pixels.width(), pixels.height());
-  std::transform(pixels.begin(), pixels.end(), picture.brightness.begin(), brightnessOf<T>);
+  std::transform(pixels.begin(), pixels.end(), picture.brightness.begin(), [](const Rgba<T>& p) {
+    return brightnessOf(p[0], p[1], p[2], std::numeric_limits<T>::max());
+  });
   if (!is_grey) {
     picture.color = Image<Rgb8>(pixels.width(), pixels.height());
     std::transform(pixels.begin(), pixels.end(), picture.color.begin(), [](const Rgba<T>& p) {
@@ -87,10 +82,6 @@ RgbaPicture readRgba(const fs::path& path) {
 }
 
 }  // namespace
-
-float brightnessOf(const Rgb8& color) {
-  return brightnessOf<std::uint8_t>({color[0], color[1], color[2], 255});
-}
 
 bool isPictureFile(const fs::path& path) {
   std::error_code error;

@@ -17,9 +17,6 @@ struct Picture {
   Image<std::uint8_t> opaque;
 };
 
-/// 0.299 R + 0.587 G + 0.114 B over 255.
-float brightnessOf(const Rgb8& color);
-
 /// Whether the first bytes are those of such a file.
 bool isPictureFile(const std::filesystem::path& path);
 

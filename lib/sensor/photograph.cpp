@@ -10,11 +10,22 @@
 
 namespace vdbfuse {
 
+float brightnessOf(std::uint32_t red, std::uint32_t green, std::uint32_t blue, std::uint32_t white) {
+  const std::uint64_t sum = 299 * std::uint64_t{red} + 587 * std::uint64_t{green} + 114 * std::uint64_t{blue};
+  return static_cast<float>(static_cast<double>(sum) / (1000.0 * white));
+}
+
+float brightnessOf(const Rgb8& color) { return brightnessOf(color[0], color[1], color[2], 255); }
+
 Image<float> brightnessOf(const Image<Rgb8>& color) {
   Image<float> brightness(color.width(), color.height());
   std::transform(color.begin(), color.end(), brightness.begin(),
-                 [](const Rgb8& p) { return (0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2]) / 255.0f; });
+                 [](const Rgb8& pixel) { return brightnessOf(pixel); });
   return brightness;
+}
+
+std::uint8_t greyLevel(float brightness) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(brightness, 0.0F, 1.0F)));
 }
 
 std::vector<std::string> validate(const Photograph& photograph) {

@@ -6,7 +6,6 @@
 #include "formats/colmap_sample.h"
 #include "formats/numpy_sample.h"
 #include "formats/tiny_scene.h"
-#include "io/picture.h"
 #include "io/temporary_folder.h"
 #include "vdbfuse/formats/image_set.h"
 #include "vdbfuse/io/png.h"
@@ -70,9 +69,7 @@ std::vector<Photograph> tinyPhotographs() {
     photograph.world_from_camera = view.world_from_camera;
     photograph.depth = DepthInterval{1.4, 3};
     photograph.color = std::move(view.map.color);
-    photograph.brightness = Image<float>(24, 18);
-    for (std::size_t i = 0; i < photograph.color.size(); ++i)
-      photograph.brightness.data()[i] = io::brightnessOf(photograph.color.data()[i]);
+    photograph.brightness = brightnessOf(photograph.color);
     photographs.push_back(std::move(photograph));
   }
   for (int y = 0; y < 18; ++y)

@@ -14,6 +14,7 @@
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/jpeg.h"
 #include "vdbfuse/io/png.h"
+#include "vdbfuse/sensor/photograph.h"
 
 namespace vdbfuse {
 namespace {
@@ -86,16 +87,16 @@ void expectPixels(const io::Picture& picture, const Rgb8& first, const Rgb8& sec
   ASSERT_EQ(picture.color.size(), 2u);
   EXPECT_EQ(picture.color(0, 0), first);
   EXPECT_EQ(picture.color(1, 0), second);
-  EXPECT_EQ(picture.brightness(0, 0), io::brightnessOf(first));
-  EXPECT_EQ(picture.brightness(1, 0), io::brightnessOf(second));
+  EXPECT_EQ(picture.brightness(0, 0), brightnessOf(first));
+  EXPECT_EQ(picture.brightness(1, 0), brightnessOf(second));
 }
 
 TEST(Pictures, BrightnessIsAWeightedSumOfTheColours) {
-  EXPECT_EQ(io::brightnessOf({255, 255, 255}), 1.0F);
-  EXPECT_EQ(io::brightnessOf({77, 77, 77}), static_cast<float>(77 / 255.0));
-  EXPECT_FLOAT_EQ(io::brightnessOf({255, 0, 0}), 0.299F);
-  EXPECT_FLOAT_EQ(io::brightnessOf({0, 255, 0}), 0.587F);
-  EXPECT_FLOAT_EQ(io::brightnessOf({0, 0, 255}), 0.114F);
+  EXPECT_EQ(brightnessOf({255, 255, 255}), 1.0F);
+  EXPECT_EQ(brightnessOf({77, 77, 77}), static_cast<float>(77 / 255.0));
+  EXPECT_FLOAT_EQ(brightnessOf({255, 0, 0}), 0.299F);
+  EXPECT_FLOAT_EQ(brightnessOf({0, 255, 0}), 0.587F);
+  EXPECT_FLOAT_EQ(brightnessOf({0, 0, 255}), 0.114F);
 }
 
 TEST(Pictures, GreyPngsHaveNoColourAndKeepSixteenBits) {
@@ -162,7 +163,7 @@ TEST(Pictures, JpegsAreGreyOrOfColour) {
     tjDestroy(encoder);
     const io::Picture picture = io::readPictureFile(folder / "a.jpg");
     EXPECT_EQ(picture.color.empty(), kind == TJSAMP_GRAY);
-    EXPECT_NEAR(picture.brightness(20, 12), io::brightnessOf(image(0, 0)), 0.01);
+    EXPECT_NEAR(picture.brightness(20, 12), brightnessOf(image(0, 0)), 0.01);
     EXPECT_EQ(io::readPictureHeader(folder / "a.jpg").width, 24);
   }
   // A long comment before the header, as large thumbnails are.

@@ -35,8 +35,14 @@ struct Photograph : PhotographHeader {
   Image<std::uint8_t> mask;  ///< silhouette: non-zero where the pixel sees the object; empty: unknown
 };
 
-/// The brightness of a colour picture, by the weights of ITU-R BT.601.
+/// 0.299 R + 0.587 G + 0.114 B over `white` (ITU-R BT.601), added up in whole numbers: equal parts give
+/// exactly their share of white.
+float brightnessOf(std::uint32_t red, std::uint32_t green, std::uint32_t blue, std::uint32_t white);
+float brightnessOf(const Rgb8& color);
+/// The same of a whole picture.
 Image<float> brightnessOf(const Image<Rgb8>& color);
+/// The nearest of 256 steps to a brightness in [0, 1]; what lies beyond becomes the first or the last.
+std::uint8_t greyLevel(float brightness);
 
 /// Everything that is wrong with a photograph, one sentence each: camera, pose, image sizes, depths.
 std::vector<std::string> validate(const Photograph& photograph);
