@@ -31,16 +31,7 @@ class JudgeTool : public testing::Test {
     for (const View& view : views) writer.add(view);
   }
 
-  // Runs what must fail: one line, exit code 1, nothing new in the folder.
-  std::string complaint(const std::string& arguments) const {
-    const std::size_t before = folder.entryCount();
-    const ToolResult run = runTool(folder, arguments + " --quiet");
-    EXPECT_EQ(run.exit_code, 1) << run.err;
-    EXPECT_EQ(run.out, "");
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_EQ(folder.entryCount(), before) << "something was left behind";
-    return run.err;
-  }
+  std::string complaint(const std::string& arguments) const { return complaintOf(folder, arguments); }
 
   TemporaryFolder folder;
 };

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -39,6 +41,17 @@ inline ToolResult runTool(const TemporaryFolder& folder, const std::string& argu
                               quoted(err);
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(err)};
+}
+
+/// What the tool says when it must fail: one line, exit code 1, nothing new in the folder.
+inline std::string complaintOf(const TemporaryFolder& folder, const std::string& arguments) {
+  const std::size_t before = folder.entryCount();
+  const ToolResult run = runTool(folder, arguments + " --quiet");
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  EXPECT_EQ(folder.entryCount(), before) << "something was left behind";
+  return run.err;
 }
 
 }  // namespace vdbfuse::test

@@ -70,14 +70,17 @@ void writePreviews(const fs::path& folder, const std::vector<StereoView>& views)
 }
 
 // Where readers of the folder look for them. MVSNet's views are numbered, COLMAP's have their names.
-void writeMasks(const fs::path& folder, const ViewSequence& written, const std::vector<StereoView>& views,
-                const std::string& format) {
+void writeMasks(const fs::path& folder, const std::vector<StereoView>& views, const std::string& format) {
+  const auto has_mask = [](const StereoView& view) { return !view.view.map.mask.empty(); };
+  if (std::none_of(views.begin(), views.end(), has_mask)) return;
+  makeFolder(folder / "masks");
+  ReadOptions read_back;
+  read_back.format = format;
+  const ViewSequence written = readDepthSet(folder, read_back).views;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const Image<std::uint8_t>& mask = views[i].view.map.mask;
-    if (mask.empty()) continue;
-    makeFolder(folder / "masks");
+    if (!has_mask(views[i])) continue;
     const std::string& name = format == "mvsnet" ? written.header(i).name : views[i].view.name;
-    writePng(folder / "masks" / (name + ".png"), mask);
+    writePng(folder / "masks" / (name + ".png"), views[i].view.map.mask);
   }
 }
 
@@ -108,12 +111,12 @@ Json withTimes(Json json, const StereoSummary& summary) {
 
 void writeFolder(const fs::path& folder, const Request& request, const StereoResult& result,
                  const Progress& progress) {
-  std::vector<View> views;
-  for (const StereoView& view : result.views) views.push_back(view.view);
-  writeDepthSet(folder, request.to, ViewSequence::fromViews(std::move(views)), {}, progress);
-  ReadOptions read_back;
-  read_back.format = request.to;
-  writeMasks(folder, readDepthSet(folder, read_back).views, result.views, request.to);
+  const std::vector<StereoView>& views = result.views;
+  std::vector<ViewHeader> headers;
+  for (const StereoView& view : views) headers.push_back(view.view);
+  writeDepthSet(folder, request.to, {std::move(headers), [&](std::size_t i) { return views[i].view.map; }},
+                {}, progress);
+  writeMasks(folder, views, request.to);
   writePreviews(folder / "preview", result.views);
 }
 
