@@ -92,6 +92,14 @@ else
   build "Without PCL, static" build-static release -DVDBFUSE_WITH_PCL=OFF -DBUILD_SHARED_LIBS=OFF
   cmake --build build-static -j "$jobs"
   run_tests "static, without PCL" build-static -LE style
+  step "Pages and headers as HTML, without a warning (Doxygen)"
+  if cmake --build build --target vdbfuse_docs; then
+    results+=("documentation: passed")
+    total_passed=$((${total_passed:-0} + 1))
+  else
+    results+=("documentation: FAILED")
+    failed=$((failed + 1))
+  fi
   step "Names in every file (clang-tidy)"
   if tests/style/tidy.sh build; then
     results+=("names: passed")
