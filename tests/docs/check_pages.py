@@ -100,7 +100,7 @@ def fields_of(struct, headers):
 
 def missing_options(page, headers):
     text = page.read_text(encoding="utf-8")
-    for marker in re.findall(r"<!-- options: ([\w ]+) -->", text):
+    for marker in re.findall(r"^<!-- options: ([\w ]+) -->", text, flags=re.M):
         for struct in marker.split():
             names = fields_of(struct, headers)
             if names is None:

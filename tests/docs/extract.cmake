@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DPAGE=page.md -DSOURCE=out.cpp -P extract.cmake: the first block of C++ with a main() becomes a file.
+cmake_minimum_required(VERSION 3.25)
 file(READ ${PAGE} text)
 set(rest "${text}")
 while(TRUE)
