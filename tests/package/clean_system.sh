@@ -14,7 +14,7 @@ step() { printf '%4d s  %s\n' $SECONDS "$*"; }
 
 step "Packages"
 rm -f build-package/*.deb
-cmake --preset package -DVDBFUSE_WITH_PCL="${VDBFUSE_WITH_PCL:-ON}" >build-package.log 2>&1 &&
+cmake --preset package -DVDBFUSE_WERROR=ON -DVDBFUSE_WITH_PCL="${VDBFUSE_WITH_PCL:-ON}" >build-package.log 2>&1 &&
   cmake --build --preset package -j "$(nproc)" >>build-package.log 2>&1 &&
   cpack --preset package >>build-package.log 2>&1 || { tail -n 30 build-package.log; fail "they cannot be built"; }
 rm build-package.log
