@@ -24,10 +24,10 @@ configure_file(${PROJECT_SOURCE_DIR}/cmake/debian/changelog.in ${PROJECT_BINARY_
 find_program(VDBFUSE_GZIP gzip REQUIRED)
 execute_process(COMMAND ${VDBFUSE_GZIP} -9nkf ${PROJECT_BINARY_DIR}/debian/changelog COMMAND_ERROR_IS_FATAL ANY)
 
-# package(COMPONENT NAME SECTION DESCRIPTION [AFTER component...] [DEPENDS package...] [SUGGESTS package...])
-# DESCRIPTION: a short line, then as many as there are to say.
-function(package COMPONENT NAME SECTION DESCRIPTION)
-  cmake_parse_arguments(PARSE_ARGV 4 arg "" "" "AFTER;DEPENDS;SUGGESTS")
+# package(COMPONENT NAME SECTION SUMMARY TEXT [AFTER component...] [DEPENDS package...] [SUGGESTS package...])
+# TEXT: lines of up to 79 characters.
+function(package COMPONENT NAME SECTION SUMMARY TEXT)
+  cmake_parse_arguments(PARSE_ARGV 5 arg "" "" "AFTER;DEPENDS;SUGGESTS")
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian/copyright ${PROJECT_BINARY_DIR}/debian/changelog.gz
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${NAME} COMPONENT ${COMPONENT})
   list(JOIN arg_DEPENDS ", " depends)
@@ -37,28 +37,33 @@ function(package COMPONENT NAME SECTION DESCRIPTION)
   set(CPACK_COMPONENT_${key}_DEPENDS ${arg_AFTER} PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_NAME ${NAME} PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${SECTION} PARENT_SCOPE)
-  set(CPACK_DEBIAN_${key}_DESCRIPTION "${DESCRIPTION}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_DESCRIPTION "depth maps to watertight surfaces, ${SUMMARY}\n${TEXT}\n${about}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_SUGGESTS "${suggests}" PARENT_SCOPE)
+  if(SECTION STREQUAL "libs")
+    set(CPACK_DEBIAN_${key}_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/triggers PARENT_SCOPE)
+  endif()
 endfunction()
 
-set(about "It asks what every depth map says about every place, visible or hidden, and finds the surface as the global
-minimum of an energy by a graph cut on an octree. Fusion of truncated signed distances is there, too.")
 set(CPACK_COMPONENTS_ALL "")
-package(runtime libvdbfuse libs "depth maps to watertight surfaces, shared library
-vdbfuse fuses depth maps with known poses. ${about}" SUGGESTS libvdbfuse-pcl)
-package(development libvdbfuse-dev libdevel "depth maps to watertight surfaces, for development
-Headers, a CMake package (find_package(vdbfuse)), a pkg-config file and examples. ${about}" AFTER runtime DEPENDS
-        "libeigen3-dev (>= 3.4)")
-package(tool vdbfuse graphics "depth maps to watertight surfaces, command line tool
-Reads depth maps of depth cameras, laser scanners and multi-view stereo in many formats, or photographs, and writes
-meshes; simulates scans and measures results. ${about}" AFTER runtime SUGGESTS libvdbfuse-pcl)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # it would come before each package's own
+set(about ".
+vdbfuse asks what every depth map says about every place, visible or hidden,
+and finds the surface as the global minimum of an energy by a graph cut on an
+octree. Fusion of truncated signed distances is there, too.")
+
+package(runtime libvdbfuse libs "shared library" "What programs that use vdbfuse are linked to." SUGGESTS libvdbfuse-pcl)
+package(development libvdbfuse-dev libdevel "for development"
+        "Headers, a CMake package, a pkg-config file and examples." AFTER runtime DEPENDS "libeigen3-dev (>= 3.4)")
+package(tool vdbfuse graphics "command line tool"
+        "Reads what depth cameras, laser scanners and multi-view stereo write, or
+photographs, and makes meshes of it; simulates scans and measures results." AFTER runtime SUGGESTS libvdbfuse-pcl)
 if(TARGET vdbfuse_pcl)
-  package(pcl libvdbfuse-pcl libs "depth maps to watertight surfaces, bridge to the Point Cloud Library
-With this package vdbfuse reads PCD files. ${about}" AFTER runtime)
-  package(pcl_development libvdbfuse-pcl-dev libdevel "depth maps to watertight surfaces, bridge to PCL, for development
-Converts organised clouds and polygon meshes of the Point Cloud Library. ${about}" AFTER development pcl DEPENDS
-          libpcl-dev pkg-config)
+  package(pcl libvdbfuse-pcl libs "bridge to PCL"
+          "The Point Cloud Library's part: with it vdbfuse reads PCD files." AFTER runtime)
+  package(pcl_development libvdbfuse-pcl-dev libdevel "bridge to PCL, for development"
+          "Converts clouds and polygon meshes of the Point Cloud Library." AFTER development pcl DEPENDS libpcl-dev
+          pkg-config)
 endif()
 
 # The examples, as a project that finds the installed package.
