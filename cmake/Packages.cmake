@@ -52,7 +52,8 @@ vdbfuse asks what every depth map says about every place, visible or hidden,
 and finds the surface as the global minimum of an energy by a graph cut on an
 octree. Fusion of truncated signed distances is there, too.")
 
-package(runtime libvdbfuse libs "shared library" "What programs that use vdbfuse are linked to." SUGGESTS libvdbfuse-pcl)
+package(runtime libvdbfuse libs "shared library" "What programs that use vdbfuse are linked to." SUGGESTS
+        libvdbfuse-pcl)
 package(development libvdbfuse-dev libdevel "for development"
         "Headers, a CMake package, a pkg-config file and examples." AFTER runtime DEPENDS "libeigen3-dev (>= 3.4)")
 package(tool vdbfuse graphics "command line tool"

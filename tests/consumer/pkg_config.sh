@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# tests/consumer/pkg_config.sh BUILD SOURCE FOLDER LIBDIR shared|static COMPILER [FLAGS...]: installs BUILD, moves it, and
-# compiles SOURCE with what pkg-config says of it, and nothing else.
+# tests/consumer/pkg_config.sh BUILD SOURCE FOLDER LIBDIR shared|static COMPILER [FLAGS...]: installs BUILD, moves it,
+# and compiles SOURCE with what pkg-config says of it, and nothing else.
 set -euo pipefail
 build=$1 source=$2 folder=$3 libdir=$4 kind=$5
 shift 5

@@ -17,7 +17,8 @@ make_root() {
   rm -rf "$root"
   mkdir -p "$root" "$folder/archives/partial"
   if [ ! -f "$folder/debian-12.tar" ]; then
-    debootstrap --variant=minbase bookworm "$folder/new" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" >"$folder/debootstrap.log" 2>&1 ||
+    debootstrap --variant=minbase bookworm "$folder/new" "${DEBIAN_MIRROR:-http://deb.debian.org/debian}" \
+      >"$folder/debootstrap.log" 2>&1 ||
       { tail -n 5 "$folder/debootstrap.log" >&2; return 1; }
     tar -C "$folder/new" -cf "$folder/debian-12.tar.new" .
     mv "$folder/debian-12.tar.new" "$folder/debian-12.tar"
@@ -37,12 +38,14 @@ in_root() {
     mount --bind "$1" "$0/var/cache/apt/archives"
     root=$0
     shift
-    exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive "$@"
+    exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
+      DEBIAN_FRONTEND=noninteractive "$@"
   ' "$root" "$folder/archives" "$@"
 }
 
 # install_in_root PACKAGE...: names, or files of the root beginning with ./ or /; what they need comes from the mirror.
 install_in_root() {
   in_root apt-get -qq -o Dpkg::Use-Pty=0 -o APT::Sandbox::User=root -o APT::Keep-Downloaded-Packages=true \
-    install --yes --no-install-recommends "$@" >>"$folder/apt.log" 2>&1 || { tail -n 20 "$folder/apt.log" >&2; return 1; }
+    install --yes --no-install-recommends "$@" >>"$folder/apt.log" 2>&1 ||
+    { tail -n 20 "$folder/apt.log" >&2; return 1; }
 }

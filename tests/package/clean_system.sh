@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# tests/package/clean_system.sh [--with-pcl]: builds the Debian packages, installs them in a clean Debian 12, runs the tool
-# there and builds programs against the library, removes them, and looks for what is left. Works in build-package/.
-# --with-pcl: also the PCL part, which fetches a few hundred megabytes more. Exit code 77: needs root and debootstrap.
+# tests/package/clean_system.sh [--with-pcl]: builds the Debian packages, asks lintian about them, installs them in a clean
+# Debian 12, runs the tool there and builds programs against the library, removes them, and looks for what is left. Works
+# in build-package/. --with-pcl: also the PCL part, which fetches a few hundred megabytes more.
+# Exit code 77: skipped, it needs root and debootstrap.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 with_pcl=no
@@ -10,6 +11,8 @@ with_pcl=no
 . tests/package/clean_root.sh
 reason=$(can_make_root) || { echo "clean system: skipped, $reason" >&2; exit 77; }
 fail() { echo "clean system: $1" >&2; exit 1; }
+# package NAME: its file, as the clean system sees it.
+package() { (cd build-package && echo "/packages/$(ls "$1"_*.deb)"); }
 step() { printf '%4d s  %s\n' $SECONDS "$*"; }
 
 step "Packages"
@@ -22,6 +25,9 @@ for package in libvdbfuse libvdbfuse-dev vdbfuse; do
   [ -f build-package/${package}_*.deb ] || fail "there is no $package"
 done
 (cd build-package && du -h ./*.deb)
+if command -v lintian >/dev/null; then
+  lintian --allow-root --fail-on error build-package/*.deb || fail "lintian finds errors"
+fi
 
 step "A clean Debian 12"
 make_root build-package/clean
@@ -30,7 +36,7 @@ cp build-package/*.deb "$root/packages/"
 cp -r tests/consumer/project "$root/work/consumer"
 
 step "The tool"
-install_in_root /packages/vdbfuse_*.deb /packages/libvdbfuse_*.deb
+install_in_root "$(package vdbfuse)" "$(package libvdbfuse)"
 in_root sh -ec '
   cd /work
   vdbfuse --version
@@ -43,7 +49,7 @@ in_root sh -ec '
 cp "$root/work/mesh.png" build-package/
 
 step "The library, by CMake and by pkg-config"
-install_in_root /packages/libvdbfuse-dev_*.deb g++ cmake make pkg-config
+install_in_root "$(package libvdbfuse-dev)" g++ cmake make pkg-config
 in_root sh -ec '
   cd /work
   cmake -S consumer -B by-cmake >/dev/null
@@ -58,7 +64,7 @@ in_root sh -ec '
 
 if [ "$with_pcl" = yes ]; then
   step "The PCL part"
-  install_in_root /packages/libvdbfuse-pcl_*.deb
+  install_in_root "$(package libvdbfuse-pcl)"
   printf '%s\n' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1' 'WIDTH 3' 'HEIGHT 3' 'POINTS 9' 'DATA ascii' \
     '-.1 -.1 1' '0 -.1 1' '.1 -.1 1' '-.1 0 1' '0 0 1' '.1 0 1' '-.1 .1 1' '0 .1 1' '.1 .1 1' >"$root/work/cloud.pcd"
   in_root vdbfuse info /work/cloud.pcd || fail "PCD files are not read"

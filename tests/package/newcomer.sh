@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # tests/package/newcomer.sh [FOLDER]: does what a newcomer does with README.md alone, in a new clone of HEAD, without a
 # compiler cache, and says how long each step takes: first mesh and picture, first own data set, first program. The
-# commands and the program are taken from README.md as they stand there. FOLDER, the own data set: any that `vdbfuse info`
-# reads; without it the one in $VDBFUSE_DATA or ../shared/data, else a synthetic one.
+# commands and the program are taken from README.md as they stand there. FOLDER is the own data set: any that
+# `vdbfuse info` reads; without it the one in $VDBFUSE_DATA or ../shared/data, else a synthetic one.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source=$PWD
