@@ -2,8 +2,10 @@
 # cmake --install: libraries, public headers, the tool, a CMake package, so that find_package(vdbfuse CONFIG) gives
 # vdbfuse::vdbfuse and, where it was built, vdbfuse::pcl, and vdbfuse.pc for pkg-config. Nothing in them knows where it
 # lies: the folder may be moved as a whole.
-# Components: runtime, development, tool, pcl, pcl_development; each is a Debian package (Packages.cmake).
+# Components: runtime, development, tool, pcl, pcl_development; each is a Debian package (Packages.cmake). What names none
+# belongs to the tool.
 include(CMakePackageConfigHelpers)
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME tool)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vdbfuse)
 
 # Libraries find each other beside themselves; the packages' ones, in /usr, as all others do.

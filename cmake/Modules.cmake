@@ -28,6 +28,10 @@ add_library(vdbfuse)
 add_library(vdbfuse::vdbfuse ALIAS vdbfuse)
 set_target_properties(vdbfuse PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${VDBFUSE_SOVERSION}
                                          POSITION_INDEPENDENT_CODE ON)
+if(NOT BUILD_SHARED_LIBS)
+  # What CMake defines for shared libraries: the same commands, so that a compiler cache serves both kinds.
+  target_compile_definitions(vdbfuse PRIVATE vdbfuse_EXPORTS)
+endif()
 target_compile_features(vdbfuse PUBLIC cxx_std_20)
 target_include_directories(
   vdbfuse

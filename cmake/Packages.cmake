@@ -67,6 +67,12 @@ if(TARGET vdbfuse_pcl)
           pkg-config)
 endif()
 
+# Manual pages are compressed in a package.
+install(CODE "file(GLOB pages \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man*/*.[0-9]\")
+if(pages)
+  execute_process(COMMAND \"${VDBFUSE_GZIP}\" -9nf \${pages} COMMAND_ERROR_IS_FATAL ANY)
+endif()" COMPONENT tool)
+
 # The examples, as a project that finds the installed package.
 file(GLOB examples ${PROJECT_SOURCE_DIR}/examples/[0-9]*.cpp)
 install(FILES ${examples} ${PROJECT_SOURCE_DIR}/examples/CMakeLists.txt ${PROJECT_SOURCE_DIR}/examples/README.md

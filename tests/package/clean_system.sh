@@ -72,7 +72,7 @@ fi
 
 step "Nothing is left"
 in_root sh -ec '
-  apt-get -qq purge --yes "vdbfuse" "libvdbfuse*" >/dev/null
+  apt-get -qq -o Dpkg::Use-Pty=0 purge --yes "vdbfuse" "libvdbfuse*" >/dev/null
   find / -xdev -iname "*vdbfuse*" -not -path "/work/*" -not -path "/packages/*" >/work/left
   dpkg-query -W -f "\${Package} \${db:Status-Status}\n" | grep -i vdbfuse >>/work/left || true
   ldconfig -p | grep -i vdbfuse >>/work/left || true

@@ -16,18 +16,17 @@ results=()
 # block HEADING LANGUAGE N: the Nth block of that language below that heading of README.md.
 block() {
   awk -v heading="$1" -v fence='```'"$2" -v wanted="$3" '
-    /^#/ { inside = ($0 == heading) }
-    inside && $0 == fence { if (++count == wanted) { copy = 1; next } }
-    copy && /^```/ { exit }
-    copy' README.md | grep . || { echo "README.md has no block $3 of $2 below $1" >&2; return 1; }
+    /^```/ { fenced = !fenced; copy = inside && fenced && $0 == fence && ++count == wanted; next }
+    !fenced && /^#/ { inside = ($0 == heading) }
+    copy' README.md | grep '' || { echo "README.md has no block $3 of $2 below $1" >&2; return 1; }
 }
 
 # timed NAME COMMANDS: runs them as they stand in README.md.
 timed() {
-  local begin=$SECONDS
   printf '\n== %s\n%s\n' "$1" "$2"
-  bash -euo pipefail -c "$2"
-  results+=("$(printf '%-40s %4d s' "$1" $((SECONDS - begin)))")
+  local TIMEFORMAT='%0R %0U %0S'
+  { time bash -euo pipefail -c "$2" 1>&3 2>&4; } 3>&1 4>&2 2>"$work/time"
+  results+=("$(awk -v name="$1" '{ printf "%-45s %5d s, %5d processor seconds", name, $1, $2 + $3 }' "$work/time")")
 }
 
 git clone --quiet "$source" "$work/vdbfuse"
