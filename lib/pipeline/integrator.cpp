@@ -6,7 +6,6 @@
 #include <mutex>
 
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/surface/live_surface.h"
 
 namespace vdbfuse {
 namespace {
@@ -114,6 +113,14 @@ TriangleMesh Integrator::mesh() {
   mesh.normals = vertexNormals(mesh);
   impl_->describeVertices(mesh);
   return mesh;
+}
+
+std::vector<SurfaceBlock> Integrator::changedBlocks() {
+  const std::lock_guard lock(impl_->surface_mutex);
+  impl_->copyChanges();
+  std::vector<SurfaceBlock> blocks = impl_->surface.changedBlocks();
+  for (SurfaceBlock& block : blocks) impl_->describeVertices(block.mesh);
+  return blocks;
 }
 
 std::size_t Integrator::meshedLeaves() const {

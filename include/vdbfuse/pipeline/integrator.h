@@ -11,6 +11,7 @@
 #include "vdbfuse/fusion/measurement_weight.h"
 #include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/mesh/triangle_mesh.h"
+#include "vdbfuse/surface/live_surface.h"
 
 namespace vdbfuse {
 
@@ -53,7 +54,10 @@ class Integrator {
   /// The surface with normals, the weights as support, and colours if they are kept: an open rim where space
   /// is unknown.
   TriangleMesh mesh();
-  /// Leaves that the last call of mesh() worked on.
+  /// What changed of it since the last call, with support and colours in the same way: LiveSurface's blocks.
+  /// The cost is that of the changes.
+  std::vector<SurfaceBlock> changedBlocks();
+  /// Leaves that the last call of mesh() or changedBlocks() worked on.
   std::size_t meshedLeaves() const;
   /// Of the volume; that of mesh() beside it is half as much again.
   std::size_t memoryBytes() const;
