@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 
 #include "capi/handles.h"
 #include "vdbfuse/base/parallel.h"
@@ -8,7 +8,8 @@
 namespace vdbfuse::capi {
 namespace {
 
-constexpr std::size_t kFuseBytes = sizeof(vdbfuse_fuse_options);  // in version 1
+// In version 1 of the interface.
+constexpr std::size_t kFuseBytes = offsetof(vdbfuse_fuse_options, progress_data) + sizeof(void*);
 
 vdbfuse_fuse_options defaultFuse() {
   vdbfuse_fuse_options options{};

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+
 #include "capi/handles.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/mesh/topology.h"
@@ -8,7 +10,8 @@ using namespace vdbfuse::capi;
 
 namespace {
 
-constexpr std::size_t kTopologyBytes = sizeof(vdbfuse_topology);  // in version 1
+// In version 1 of the interface.
+constexpr std::size_t kTopologyBytes = offsetof(vdbfuse_topology, reserved) + sizeof(std::int32_t);
 
 static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(std::uint32_t) &&
               sizeof(Rgb8) == 3);

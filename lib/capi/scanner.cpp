@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+
 #include "capi/handles.h"
 #include "vdbfuse/base/parallel.h"
 
@@ -8,8 +10,8 @@ using namespace vdbfuse::capi;
 namespace {
 
 // Bytes of the structs in version 1 of the interface.
-constexpr std::size_t kOptionsBytes = sizeof(vdbfuse_scanner_options),
-                      kStatusBytes = sizeof(vdbfuse_scanner_status);
+constexpr std::size_t kOptionsBytes = offsetof(vdbfuse_scanner_options, colors) + sizeof(std::int32_t),
+                      kStatusBytes = offsetof(vdbfuse_scanner_status, kept_bytes) + sizeof(std::uint64_t);
 
 vdbfuse_scanner_options defaultScanner() {
   const ScannerOptions from;

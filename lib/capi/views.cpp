@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cstddef>
 
 #include "capi/handles.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -10,7 +11,8 @@ namespace vdbfuse::capi {
 namespace {
 
 // Bytes of the structs in version 1 of the interface.
-constexpr std::size_t kViewBytes = sizeof(vdbfuse_view), kSynthBytes = sizeof(vdbfuse_synth_options);
+constexpr std::size_t kViewBytes = offsetof(vdbfuse_view, color_height) + sizeof(std::int32_t),
+                      kSynthBytes = offsetof(vdbfuse_synth_options, seed) + sizeof(std::uint64_t);
 
 vdbfuse_view defaultView() {
   vdbfuse_view view{};

@@ -53,7 +53,7 @@ VDBFUSE_API const char* vdbfuse_status_name(vdbfuse_status status);
 VDBFUSE_API const char* vdbfuse_last_error(void);
 
 /// Called during long calls, never from two threads at once, but perhaps not from the caller's. Returns 0 to
-/// go on, anything else to stop.
+/// go on, anything else to stop; may be called a few more times until all threads have stopped.
 typedef int32_t (*vdbfuse_progress)(const char* step, double fraction, void* data);
 
 // ------------------------------------------------------------------------------------------------- views --
@@ -99,7 +99,7 @@ VDBFUSE_API vdbfuse_status vdbfuse_views_read(const char* path, vdbfuse_views** 
 VDBFUSE_API vdbfuse_status vdbfuse_views_add(vdbfuse_views* views, const vdbfuse_view* view);
 VDBFUSE_API size_t vdbfuse_views_count(const vdbfuse_views* views);
 /// View number `index`, of a pinhole camera, with depths as packed floats. Its images lie in the handle from
-/// then on.
+/// then on. Set out->struct_size before.
 VDBFUSE_API vdbfuse_status vdbfuse_views_get(vdbfuse_views* views, size_t index, vdbfuse_view* out);
 VDBFUSE_API void vdbfuse_views_destroy(vdbfuse_views* views);
 
