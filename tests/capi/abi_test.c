@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program in C11 that uses the library as one in another language would: the scene `figure` in memory, fused at
-// once and live, and every status code that can be provoked. Says what went wrong, and returns 1 then.
+// A program in C11 that uses the library as one in another language would: the scene `figure` in memory,
+// fused at once and live, and every status code that can be provoked. Says what went wrong, and returns 1
+// then.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +9,8 @@
 
 #include "vdbfuse/capi/vdbfuse.h"
 
-// What programs that are compiled already rely on. A change of these numbers is a change of VDBFUSE_ABI_VERSION.
+// What programs that are compiled already rely on. A change of these numbers is a change of
+// VDBFUSE_ABI_VERSION.
 _Static_assert(VDBFUSE_ABI_VERSION == 1, "the numbers below are those of version 1");
 #if UINTPTR_MAX == 0xffffffffffffffffu
 #define AT(type, member, offset) \
@@ -98,17 +100,34 @@ static void check_refused(vdbfuse_status status, vdbfuse_status expected, const 
 }
 #define REFUSED(call, expected, words) check_refused((call), (expected), (words), __LINE__)
 
-enum { kViews = 20, kWidth = 96, kHeight = 72 };
+enum { kViews = 20, kWidth = 96, kHeight = 72 };  // at most
+
+// How much work it is. Under valgrind everything takes fifty times as long, and threads wait for each other.
+static struct {
+  int32_t views, width, height, resolution, threads;
+  size_t triangles;  // that come of it at least
+} size = {kViews, kWidth, kHeight, 40, 0, 500};
+
+static void take_a_small_size(void) {
+  size.views = 12;
+  size.width = 48;
+  size.height = 36;
+  size.resolution = 20;
+  size.threads = 1;
+  size.triangles = 100;
+}
+
+static size_t view_count(void) { return (size_t)size.views; }
 
 static vdbfuse_views* synthetic_figure(void) {
   vdbfuse_synth_options synth;
   vdbfuse_views* views = NULL;
   CHECK(vdbfuse_synth_options_init(&synth, sizeof synth) == VDBFUSE_OK);
-  synth.views = kViews;
-  synth.width = kWidth;
-  synth.height = kHeight;
+  synth.views = size.views;
+  synth.width = size.width;
+  synth.height = size.height;
   CHECK(vdbfuse_views_synthesize("figure", &synth, &views) == VDBFUSE_OK);
-  CHECK(vdbfuse_views_count(views) == kViews);
+  CHECK(vdbfuse_views_count(views) == view_count());
   return views;
 }
 
@@ -122,7 +141,8 @@ static vdbfuse_view view_of(vdbfuse_views* views, size_t index) {
 static vdbfuse_fuse_options fuse_options(void) {
   vdbfuse_fuse_options options;
   CHECK(vdbfuse_fuse_options_init(&options, sizeof options) == VDBFUSE_OK);
-  options.resolution = 40;
+  options.resolution = size.resolution;
+  options.threads = size.threads;
   return options;
 }
 
@@ -140,7 +160,7 @@ static void check_mesh(const vdbfuse_mesh* mesh) {
   CHECK(vdbfuse_mesh_topology(mesh, &topology) == VDBFUSE_OK);
   CHECK(topology.is_closed == 1 && topology.open_edges == 0 && topology.nonmanifold_edges == 0);
   const size_t vertices = vdbfuse_mesh_vertex_count(mesh), triangles = vdbfuse_mesh_triangle_count(mesh);
-  CHECK(triangles > 500);
+  CHECK(triangles > size.triangles);
   const uint32_t* corner = vdbfuse_mesh_triangles(mesh);
   size_t outside = 0, supported = 0, bent = 0;
   for (size_t i = 0; i < 3 * triangles; ++i) outside += corner[i] >= vertices;
@@ -187,13 +207,13 @@ static void fuse_own_images(vdbfuse_views* figure) {
   static uint16_t depths[kViews][kHeight][kWidth];
   vdbfuse_views* views = NULL;
   CHECK(vdbfuse_views_create(&views) == VDBFUSE_OK);
-  for (size_t i = 0; i < kViews; ++i) {
+  for (size_t i = 0; i < view_count(); ++i) {
     vdbfuse_view view = view_of(figure, i);
     const float* from = view.depth;
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x)
-        depths[i][kHeight - 1 - y][x] = (uint16_t)lrintf(20000 * from[y * kWidth + x]);
-    view.depth = depths[i][kHeight - 1];
+    for (int y = 0; y < view.height; ++y)
+      for (int x = 0; x < view.width; ++x)
+        depths[i][view.height - 1 - y][x] = (uint16_t)lrintf(20000 * from[y * view.width + x]);
+    view.depth = depths[i][view.height - 1];
     view.depth_row_bytes = -(int64_t)sizeof depths[i][0];
     view.depth_type = VDBFUSE_DEPTH_UINT16;
     view.depth_scale = 1.0 / 20000;
@@ -208,7 +228,7 @@ static void fuse_own_images(vdbfuse_views* figure) {
   vdbfuse_mesh_destroy(mesh);
   options.method = VDBFUSE_METHOD_TSDF;
   CHECK(vdbfuse_fuse(views, &options, &mesh) == VDBFUSE_OK);
-  CHECK(vdbfuse_mesh_triangle_count(mesh) > 500);
+  CHECK(vdbfuse_mesh_triangle_count(mesh) > size.triangles);
   vdbfuse_mesh_destroy(mesh);
   vdbfuse_views_destroy(views);
 }
@@ -251,7 +271,7 @@ static void scan_live(vdbfuse_views* views) {
   CHECK(vdbfuse_views_create(&right) == VDBFUSE_OK);
   uint64_t ids[kViews];
   double poses[kViews][16];
-  for (size_t i = 0; i < kViews; ++i) {
+  for (size_t i = 0; i < view_count(); ++i) {
     vdbfuse_view view = view_of(views, i);
     memcpy(poses[i], view.world_from_camera, sizeof poses[i]);
     CHECK(vdbfuse_views_add(right, &view) == VDBFUSE_OK);
@@ -260,12 +280,12 @@ static void scan_live(vdbfuse_views* views) {
     CHECK(ids[i] == i + 1);
   }
   CHECK(vdbfuse_scanner_wait(scanner) == VDBFUSE_OK);
-  check_preview(scanner, kViews);
+  check_preview(scanner, view_count());
   uint64_t twice = 0;
   const vdbfuse_view again = view_of(views, 0);
   CHECK(vdbfuse_scanner_push(scanner, &again, &twice) == VDBFUSE_OK);
   CHECK(vdbfuse_scanner_remove(scanner, twice) == VDBFUSE_OK);
-  CHECK(vdbfuse_scanner_correct_poses(scanner, kViews, ids, &poses[0][0]) == VDBFUSE_OK);
+  CHECK(vdbfuse_scanner_correct_poses(scanner, view_count(), ids, &poses[0][0]) == VDBFUSE_OK);
   const vdbfuse_fuse_options options = fuse_options();
   vdbfuse_mesh *mesh = NULL, *expected = NULL;
   CHECK(vdbfuse_scanner_finish(scanner, &options, &mesh) == VDBFUSE_OK);
@@ -274,7 +294,8 @@ static void scan_live(vdbfuse_views* views) {
   vdbfuse_scanner_status status;
   status.struct_size = sizeof status;
   CHECK(vdbfuse_scanner_get_status(scanner, &status) == VDBFUSE_OK);
-  CHECK(status.pushed == kViews + 1 && status.dropped == 0 && status.kept == kViews && status.waiting == 0);
+  CHECK(status.pushed == view_count() + 1 && status.dropped == 0 && status.kept == view_count() &&
+        status.waiting == 0);
   vdbfuse_mesh_destroy(mesh);
   vdbfuse_mesh_destroy(expected);
   vdbfuse_views_destroy(right);
@@ -311,8 +332,8 @@ static void refuse_views(vdbfuse_views* views) {
   REFUSED(vdbfuse_views_add(views, &view), VDBFUSE_INVALID_ARGUMENT, "expected finite numbers");
   view = good, view.color = (const uint8_t*)"black";
   REFUSED(vdbfuse_views_add(views, &view), VDBFUSE_INVALID_ARGUMENT, "view.color: its width and height");
-  REFUSED(vdbfuse_views_get(views, kViews, &view), VDBFUSE_INVALID_ARGUMENT, "index: is 20 of 20");
-  CHECK(vdbfuse_views_count(views) == kViews);
+  REFUSED(vdbfuse_views_get(views, view_count(), &view), VDBFUSE_INVALID_ARGUMENT, "index: is ");
+  CHECK(vdbfuse_views_count(views) == view_count());
 }
 
 static void refuse_sources(void) {
@@ -371,7 +392,8 @@ static void refuse_scans(void) {
   REFUSED(vdbfuse_scanner_push(scanner, NULL, &id), VDBFUSE_INVALID_ARGUMENT, "view: must not be NULL");
   CHECK(id == 0);
   REFUSED(vdbfuse_scanner_remove(scanner, 5), VDBFUSE_INVALID_ARGUMENT, "there is none with number 5");
-  REFUSED(vdbfuse_scanner_correct_poses(scanner, 1, &id, zero), VDBFUSE_INVALID_ARGUMENT, "world_from_camera");
+  REFUSED(vdbfuse_scanner_correct_poses(scanner, 1, &id, zero), VDBFUSE_INVALID_ARGUMENT,
+          "world_from_camera");
   REFUSED(vdbfuse_scanner_correct_poses(scanner, 1, NULL, zero), VDBFUSE_INVALID_ARGUMENT, "ids");
   vdbfuse_mesh* mesh = NULL;
   REFUSED(vdbfuse_scanner_finish(scanner, NULL, &mesh), VDBFUSE_INVALID_ARGUMENT, "views");
@@ -388,7 +410,9 @@ static void take_null_where_it_does_no_harm(void) {
   CHECK(vdbfuse_preview_changed(NULL, 0, NULL) == NULL && vdbfuse_preview_newest(NULL) == 0);
 }
 
-int main(void) {
+// abi_test [small]
+int main(int argc, char** argv) {
+  if (argc > 1 && strcmp(argv[1], "small") == 0) take_a_small_size();
   CHECK(vdbfuse_abi_version() == VDBFUSE_ABI_VERSION);
   CHECK(strlen(vdbfuse_version()) >= 5 && vdbfuse_last_error()[0] == '\0');
   CHECK(strcmp(vdbfuse_status_name(VDBFUSE_CANCELLED), "cancelled") == 0);
