@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
+#include "surface/block_mesh.h"
 #include "surface/leaf_mesh.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/volume/leaf_index.h"
@@ -23,6 +25,20 @@ Index3 upperStep(std::size_t corner) {
   return ScalarGrid::kLeafSide * Index3(corner & 1, corner >> 1 & 1, static_cast<int>(corner >> 2));
 }
 
+Index3 blockOf(const Index3& voxel) {
+  constexpr int kMask = ~(LiveSurface::kBlockSide - 1);
+  return {voxel.x() & kMask, voxel.y() & kMask, voxel.z() & kMask};
+}
+
+// The blocks that a change of a leaf's triangles shows in: of itself and its neighbours, by their normals.
+void appendBlocksAround(const Index3& leaf, std::vector<Index3>& blocks) {
+  constexpr int kStep = ScalarGrid::kLeafSide;
+  const Index3 low = blockOf(leaf - Index3::Constant(kStep)), high = blockOf(leaf + Index3::Constant(kStep));
+  for (int x = low.x(); x <= high.x(); x += LiveSurface::kBlockSide)
+    for (int y = low.y(); y <= high.y(); y += LiveSurface::kBlockSide)
+      for (int z = low.z(); z <= high.z(); z += LiveSurface::kBlockSide) blocks.emplace_back(x, y, z);
+}
+
 }  // namespace
 
 struct LiveSurface::Impl {
@@ -38,6 +54,8 @@ struct LiveSurface::Impl {
   std::vector<Leaf> leaves;                               ///< in the order in which they came
   std::vector<std::uint32_t> changed;
   std::size_t meshed = 0;
+  std::vector<Index3> stale;             ///< blocks that changed since changedBlocks(), with repeats
+  std::set<Index3, OriginBefore> given;  ///< blocks that have triangles, as changedBlocks() said
 
   std::uint32_t find(const Index3& origin) const {
     const auto found = numbers.find(origin);
@@ -88,6 +106,39 @@ struct LiveSurface::Impl {
     forEach(connected, [&](Leaf& leaf) { connect(leaf); });
     changed.clear();
     meshed = connected.size();
+    for (const std::uint32_t leaf : connected) appendBlocksAround(leaves[leaf].origin, stale);
+    sortUniqueOrigins(stale);
+  }
+
+  TriangleMesh meshOf(const Index3& block) const {
+    const Index3 first = block - Index3::Constant(ScalarGrid::kLeafSide);
+    BlockNeighbourhood around{};
+    for (int x = 0; x < kAroundBlock; ++x) {
+      for (int y = 0; y < kAroundBlock; ++y) {
+        const Index3 column = first + ScalarGrid::kLeafSide * Index3(x, y, 0);
+        const Index3 end = column + ScalarGrid::kLeafSide * Index3(0, 0, kAroundBlock);
+        for (auto leaf = numbers.lower_bound(column); leaf != numbers.end() && originBefore(leaf->first, end);
+             ++leaf) {
+          const int z = (leaf->first.z() - first.z()) / ScalarGrid::kLeafSide;
+          around[placeAround(x, y, z)] = &leaves[leaf->second].mesh;
+        }
+      }
+    }
+    return blockMesh(around);
+  }
+
+  std::vector<SurfaceBlock> changedBlocks() {
+    std::vector<SurfaceBlock> blocks;
+    for (const Index3& origin : stale) blocks.push_back({origin, {}});
+    stale.clear();
+    parallelFor(blocks.size(), 1,
+                [&](std::size_t i, std::size_t) { blocks[i].mesh = meshOf(blocks[i].origin); });
+    std::erase_if(blocks, [&](const SurfaceBlock& block) {
+      return block.mesh.triangles.empty() && given.erase(block.origin) == 0;  // was empty before
+    });
+    for (const SurfaceBlock& block : blocks)
+      if (!block.mesh.triangles.empty()) given.insert(block.origin);
+    return blocks;
   }
 
   TriangleMesh merge() const {
@@ -122,6 +173,11 @@ void LiveSurface::set(const Index3& origin, std::span<const float, ScalarGrid::k
 TriangleMesh LiveSurface::mesh() {
   impl_->update();
   return impl_->merge();
+}
+
+std::vector<SurfaceBlock> LiveSurface::changedBlocks() {
+  impl_->update();
+  return impl_->changedBlocks();
 }
 
 std::size_t LiveSurface::meshedLeaves() const { return impl_->meshed; }

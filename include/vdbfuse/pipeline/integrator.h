@@ -11,6 +11,7 @@
 #include "vdbfuse/fusion/measurement_weight.h"
 #include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/mesh/triangle_mesh.h"
+#include "vdbfuse/surface/live_surface.h"
 
 namespace vdbfuse {
 
@@ -33,7 +34,7 @@ std::vector<std::string> validate(const IntegratorOptions& options);
 
 /// One thread integrates, another may ask for the mesh meanwhile: it is made of what has been integrated when
 /// it is asked for, perhaps with parts of the views that come while it is made, and holds integrate() up for
-/// a few hundred leaves at a time only. Triangles are made anew only where something changed since the last
+/// a thousand leaves at a time only. Triangles are made anew only where something changed since the last
 /// mesh; putting all of them together, normals and colours are a pass over the whole.
 class Integrator {
  public:
@@ -53,7 +54,10 @@ class Integrator {
   /// The surface with normals, the weights as support, and colours if they are kept: an open rim where space
   /// is unknown.
   TriangleMesh mesh();
-  /// Leaves that the last call of mesh() worked on.
+  /// What changed of it since the last call, with support and colours in the same way: LiveSurface's blocks.
+  /// The cost is that of the changes.
+  std::vector<SurfaceBlock> changedBlocks();
+  /// Leaves that the last call of mesh() or changedBlocks() worked on.
   std::size_t meshedLeaves() const;
   /// Of the volume; that of mesh() beside it is half as much again.
   std::size_t memoryBytes() const;
