@@ -21,6 +21,11 @@ endif()
 if(TARGET vdbfuse_tool)
   set_target_properties(vdbfuse_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${lib_from_bin}")
   install(TARGETS vdbfuse_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 FILES_MATCHING
+          PATTERN "*.1")
+  install(FILES ${PROJECT_BINARY_DIR}/share/vdbfuse.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          RENAME vdbfuse)
+  install(FILES ${PROJECT_BINARY_DIR}/share/_vdbfuse DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vdbfuseConfig.cmake.in ${PROJECT_BINARY_DIR}/vdbfuseConfig.cmake

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/number_check.h"
 #include "cli/one_of.h"
 #include "commands.h"
 #include "output_folder.h"
@@ -64,7 +65,7 @@ void run(const Request& request) {
   refuseToReplace(request.output, request.input);
   OutputFolder output(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
   {
-    const ProgressLine line(request.quiet);
+    const ProgressLine line(request.quiet, {{"write", 1}});
     writeDepthSet(output.temporaryPath(), request.to, set.views, request.write, line.progress());
   }
   const DepthReading reading = readDepthSet(output.temporaryPath(), readBack(request)).reading;
@@ -100,12 +101,12 @@ void addConvert(CLI::App& app, Action& action) {
   sub.add_option_function<double>(
          "--step", [request](double step) { request->write.depth_scale = step; },
          "Length of one step of formats that hold whole numbers")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("LENGTH")
       ->option_text("what the format's readers expect");
   addReadOptions(sub, request->read);
   sub.add_option("--views", request->views, "The first N views only")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("N")
       ->option_text("all");
   addJsonOption(sub, request->json, "Write what was done as one JSON object");

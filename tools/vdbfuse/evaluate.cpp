@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/number_check.h"
 #include "commands.h"
 #include "interrupts.h"
 #include "run_options.h"
@@ -153,12 +154,12 @@ void addEvaluate(CLI::App& app, Action& action) {
                  "completeness")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("LENGTH")
       ->option_text("1 % of the diagonal of the truth's bounding box");
   sub.add_option("--deep", arguments->options.deep,
                  "Also the volume lost and invented further than this from the true surface")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("LENGTH")
       ->option_text("none");
   sub.add_option("--regions", arguments->regions,

@@ -52,8 +52,48 @@ void writeOutputs(const FuseRequest& request, const Reconstruction& result, cons
   writeTogether(outputs);
 }
 
-JudgedScan judged(const DepthSet& set, FuseRequest& request, const Progress& progress) {
+// Millions of pixels, as the plan loads them.
+double megapixels(const ViewSequence& views, const ScanPlan& plan) {
+  double pixels = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Projection& p = views.header(i).projection;
+    const int factor = plan.reduction.empty() ? 1 : plan.reduction[i];
+    pixels += 1e-6 * imageWidth(p) * imageHeight(p) / (factor * factor);
+  }
+  return pixels;
+}
+
+// Seconds of each step on the machine and the scans that they were measured on; only their shares count.
+std::vector<StepShare> expectedSteps(const ViewSequence& views, const ScanPlan& plan,
+                                     const FuseRequest& request) {
+  const double pixels = megapixels(views, plan), cells = 1e-6 * plan.cells;
+  std::vector<StepShare> steps = {{"load views", 0.03 * pixels}};
+  if (request.judgement.empty())
+    steps.insert(steps.end(), {{"calibrate noise", 0.04 * pixels},
+                               {"analyse surfaces", 0.13 * pixels},
+                               {"judge pixels", 0.18 * pixels},
+                               {"weigh views", 0.015 * pixels},
+                               {"look for denial", 0.12 * pixels}});
+  if (request.reconstruct.method == Method::Tsdf) {
+    steps.insert(steps.end(), {{"integrate", cells}, {"connect triangles", 0.4 * cells}});
+  } else {
+    steps.insert(steps.end(), {{"allocate grid", 0.2 * cells},
+                               {"count agreement", 1.1 * cells},
+                               {"evidence", 6.2 * cells},
+                               {"minimum cut", 1.3 * cells},
+                               {"place surface", 1.3 * cells},
+                               {"complete surface", 4.6 * cells},
+                               {"refine surface", 1.3 * cells},
+                               {"connect triangles", 0.3 * cells}});
+  }
+  if (request.color == "auto") steps.push_back({"colour", 0.18 * pixels});
+  return steps;
+}
+
+JudgedScan judged(const DepthSet& set, FuseRequest& request, ProgressLine& line) {
+  const Progress& progress = line.progress();
   ScanPlan plan = planReconstruction(set.views, request.reconstruct, progress);
+  line.expect(expectedSteps(set.views, plan, request));
   if (!request.quiet) printPlan(plan, request.reconstruct.method);
   if (request.judgement.empty()) return judgeScan(set.views, request.reconstruct, std::move(plan), progress);
   JudgedScan scan = readJudgement(request.judgement, set.views, std::move(plan), progress);
@@ -95,12 +135,6 @@ ViewSequence picturesOf(const FuseRequest& request, const Input& input) {
   return readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load).views;
 }
 
-// Parts of the whole time of a run, as measured on scans of 20 to 70 views.
-std::vector<StepShare> stepShares(const FuseRequest& request) {
-  if (request.reconstruct.method == Method::Tsdf) return {};
-  return {};
-}
-
 void requireOutputs(const FuseRequest& request) {
   if (request.explain) return;
   requireMeshFormat(request.output);
@@ -112,9 +146,9 @@ void fuse(FuseRequest request, std::vector<FoundValue>& found) {
   const ThreadLimit threads(request.threads);
   requireOutputs(request);
   resolve(request);
-  const ProgressLine line(request.quiet, stepShares(request));
+  ProgressLine line(request.quiet);
   const Input input = readInput(request, line.progress());
-  JudgedScan scan = judged(input.set, request, line.progress());
+  JudgedScan scan = judged(input.set, request, line);
   found = foundValues(request, scan, resolveParameters(scan, request.reconstruct), input.set.format);
   if (request.explain) return;
   Reconstruction result = reconstruct(std::move(scan), request.reconstruct, line.progress());

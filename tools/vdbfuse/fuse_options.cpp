@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "arguments.h"
+#include "cli/number_check.h"
 #include "cli/one_of.h"
 #include "memory_option.h"
 #include "vdbfuse/base/errors.h"
@@ -27,12 +28,12 @@ void addGridOptions(CLI::App& app, FuseRequest& r) {
   app.option_defaults()->group("Grid");
   auto* voxel = app.add_option("--voxel", r.reconstruct.voxel,
                                "Edge of the finest cells; half of it costs four times as much")
-                    ->check(CLI::PositiveNumber)
+                    ->check(positiveNumber())
                     ->type_name("LENGTH")
                     ->option_text("from the data: as fine as the measurements lie, or their noise");
   app.add_option("--resolution", r.reconstruct.resolution,
                  "In place of --voxel: longest side of the domain / voxel")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("VOXELS")
       ->option_text("from the data, at most 512")
       ->excludes(voxel);
@@ -50,11 +51,11 @@ void addEnergyOptions(CLI::App& app, FuseRequest& r) {
             "Global minimum cut, or signed distances (Curless and Levoy)");
   addChoice(app, "--rule", o.evidence.rule, kRules, "How the views' testimony is combined");
   app.add_option("--visibility-prior", o.evidence.visibility_prior, "a of the prior Beta(v; a, 1)")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("NUMBER")
       ->capture_default_str();
   app.add_option("--visibility", o.evidence.visibility, "One visibility v in place of the prior")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(numberBetween(0.0, 1.0))
       ->type_name("SHARE")
       ->option_text("none: the prior");
   app.add_option("--prior", o.evidence.prior, "Largest prior log-odds of outside")
@@ -71,15 +72,15 @@ void addEnergyOptions(CLI::App& app, FuseRequest& r) {
       ->capture_default_str();
   app.add_option("--depth-prior", o.prior_decay,
                  "Decay length of the prior of the depth behind which a point is hidden")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("LENGTH")
       ->option_text("none: flat");
   app.add_option("--lambda", o.lambda, "Weight of the evidence")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("1/LENGTH")
       ->option_text("0.6/max(voxel, noise)");
   app.add_option("--mask-error", o.evidence.mask_error, "Share of the pixels of masks that are wrong")
-      ->check(CLI::Range(1e-6, 0.499))
+      ->check(numberBetween(1e-6, 0.499))
       ->type_name("SHARE")
       ->capture_default_str();
   app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap: a cost of e^(-mu x agreeing views)")
@@ -91,16 +92,16 @@ void addSurfaceOptions(CLI::App& app, FuseRequest& r) {
   ReconstructOptions& o = r.reconstruct;
   app.option_defaults()->group("Surface");
   app.add_option("--trim", o.trim, "Cut away what fewer views than this agree on; 0.3: what was invented")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("NUMBER")
       ->capture_default_str();
   app.add_option("--min-component", o.min_component,
                  "Drop components whose bounding box has a smaller diagonal; 0: keep all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("LENGTH")
       ->capture_default_str();
   app.add_option("--simplify", o.simplify, "Leave about so many triangles; flat parts get fewer; 0: keep all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--color", r.color, "auto: from the pictures, where the input has some")
@@ -132,17 +133,17 @@ void addTsdfOptions(CLI::App& app, FuseRequest& r) {
       ->delimiter(',')
       ->transform(oneOf({"confidence", "noise", "incidence", "silhouette", "none"}))
       ->type_name("WORDS")
-      ->option_text(joined(weightNames(t.weights), ","));
+      ->default_str(joined(weightNames(t.weights), ","));
   app.add_option("--min-weight", t.least_weight, "Voxels with this weight or less are unknown")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("NUMBER")
       ->capture_default_str();
   app.add_option("--close-gaps", t.close_gaps, "Voxels that holes and rims are filled by")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("N")
       ->capture_default_str();
   app.add_option("--trim-rim", t.trim_rim, "Cut off frays narrower than twice so many triangles")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("N")
       ->capture_default_str();
 }

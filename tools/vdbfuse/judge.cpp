@@ -46,7 +46,12 @@ void run(Request request) {
   OutputFolder folder(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
   resolve(request.sensor, request.options);
   const DepthSet set = readScan(request.input, request.sensor, request.quiet ? Words::Keep : Words::Print);
-  const ProgressLine line(request.quiet);
+  const ProgressLine line(request.quiet, {{"load views", 3},
+                                          {"calibrate noise", 4},
+                                          {"analyse surfaces", 13},
+                                          {"judge pixels", 18},
+                                          {"weigh views", 1.5},
+                                          {"look for denial", 12}});
   const JudgedScan scan = judgeScan(set.views, request.options, line.progress());
   const JudgementOrigin origin{VDBFUSE_VERSION, request.input.string(), set.format};
   writeJudgement(folder.temporaryPath(), scan, origin);

@@ -42,6 +42,7 @@ ProgressLine::ProgressLine(bool quiet, std::vector<StepShare> steps)
                                                     : Style::Silent),
       time_left_(std::move(steps)),
       began_(now()),
+      expecting_since_(began_),
       progress_([this](std::string_view step, double fraction) { return show(step, fraction); }) {}
 
 ProgressLine::~ProgressLine() {
@@ -56,17 +57,22 @@ bool ProgressLine::show(std::string_view step, double fraction) {
   const bool is_new = step != step_;
   if (!is_new && time - shown_ < kInterval && fraction < 1) return true;
   step_ = step, shown_ = time;
-  print(fraction, time - began_);
+  print(fraction, time);
   return true;
 }
 
-void ProgressLine::print(double fraction, double seconds) const {
-  const double left = time_left_.after(step_, fraction, seconds);
+void ProgressLine::expect(std::vector<StepShare> steps) {
+  time_left_ = TimeLeft(std::move(steps));
+  expecting_since_ = now();
+}
+
+void ProgressLine::print(double fraction, double time) const {
+  const double left = time_left_.after(step_, fraction, time - expecting_since_);
   char left_text[32] = "null";
   if (left >= 0) std::snprintf(left_text, sizeof left_text, "%.1f", left);
   if (style_ == Style::JsonLines) {
     std::fprintf(stderr, "{\"step\":\"%s\",\"fraction\":%.3f,\"seconds\":%.2f,\"left\":%s}\n", step_.c_str(),
-                 fraction, seconds, left_text);
+                 fraction, time - began_, left_text);
     return;
   }
   std::fprintf(stderr, "\r\033[K%s %3.0f %%", step_.c_str(), 100 * fraction);

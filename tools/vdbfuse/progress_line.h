@@ -19,7 +19,7 @@ struct StepShare {
 class TimeLeft {
  public:
   explicit TimeLeft(std::vector<StepShare> steps) : steps_(std::move(steps)) {}
-  /// `seconds`: since the run began. A negative answer: not known.
+  /// `seconds`: since the first of the steps began. A negative answer: not known.
   double after(const std::string& step, double fraction, double seconds) const;
 
  private:
@@ -34,16 +34,18 @@ class ProgressLine {
   explicit ProgressLine(bool quiet, std::vector<StepShare> steps = {});
   ~ProgressLine();
   const Progress& progress() const { return progress_; }
+  /// What is known of the steps to come, from now on.
+  void expect(std::vector<StepShare> steps);
 
  private:
   enum class Style { Silent, Terminal, JsonLines };
   bool show(std::string_view step, double fraction);
-  void print(double fraction, double seconds) const;
+  void print(double fraction, double time) const;
 
   Style style_;
   TimeLeft time_left_;
   std::string step_;
-  double began_ = 0, shown_ = 0;
+  double began_ = 0, expecting_since_ = 0, shown_ = 0;
   Progress progress_;
 };
 

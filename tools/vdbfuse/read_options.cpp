@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/number_check.h"
 #include "cli/one_of.h"
 
 namespace vdbfuse::tool {
@@ -151,7 +152,7 @@ void addDepthOptions(CLI::App& command, ReadArguments& options) {
       .add_option_function<double>(
           "--depth-scale", [&options](double scale) { options.depth_scale = scale; },
           "Stored number times this is a length (disparity: pixels, inverse: 1/length)")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("NUMBER")
       ->option_text("what the format says");
   command
@@ -170,15 +171,15 @@ void addDepthOptions(CLI::App& command, ReadArguments& options) {
       .add_option_function<double>(
           "--baseline", [&options](double baseline) { options.baseline = baseline; },
           "Distance between the two cameras, for --depth-kind disparity")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("LENGTH")
       ->option_text("what the files say");
   command.add_option("--min-depth", options.min_depth, "Nearer depths are left out")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("LENGTH")
       ->capture_default_str();
   command.add_option("--max-depth", options.max_depth, "Further depths are left out")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("LENGTH")
       ->option_text("none");
 }
@@ -207,7 +208,7 @@ void addReadOptions(CLI::App& command, ReadArguments& options) {
       .add_option_function<double>(
           "--splat-step", [&options](double degrees) { options.splat_step = degrees * kRadiansPerDegree; },
           "Between pixels of the depth maps that points without rows and columns are made into")
-      ->check(CLI::Range(1e-4, 20.0))
+      ->check(numberBetween(1e-4, 20.0))
       ->type_name("DEGREES")
       ->option_text("as the points are spaced");
   addConventionOption(command, options);

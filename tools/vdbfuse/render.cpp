@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "arguments.h"
+#include "cli/number_check.h"
 #include "cli/one_of.h"
 #include "commands.h"
 #include "interrupts.h"
@@ -150,7 +151,7 @@ void addCameraOptions(CLI::App& app, Request& request) {
   app.add_option(
          "--turntable", request.turntable,
          "From so many sides around the axis that points up, in one picture; --size of each; 0: from one")
-      ->check(CLI::Range(0, 400))
+      ->check(numberBetween(0, 400))
       ->type_name("N")
       ->capture_default_str()
       ->excludes(from)

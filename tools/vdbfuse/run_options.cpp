@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "cli/number_check.h"
+
 namespace vdbfuse::tool {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr const char* kStandardOutput = "-";
 
 void addRunOptions(CLI::App& app, RunArguments& arguments) {
   app.add_option("--threads", arguments.threads, "Threads that compute; 0: all processors")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("N")
       ->capture_default_str()
       ->group(kRunGroup);

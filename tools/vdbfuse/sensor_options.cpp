@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "arguments.h"
+#include "cli/number_check.h"
 #include "cli/one_of.h"
 #include "vdbfuse/base/errors.h"
 
@@ -44,7 +45,7 @@ std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& argum
                                            ReconstructOptions& options) {
   addReadOptions(app, arguments.read);
   app.add_option("--views", arguments.views, "Use the first N views only")
-      ->check(CLI::PositiveNumber)
+      ->check(positiveNumber())
       ->type_name("N")
       ->option_text("all");
   app.add_option("--bbox", arguments.box, "Domain: the box that the surface is looked for in")
@@ -65,7 +66,7 @@ std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& argum
           ->capture_default_str(),
       sensor,
       app.add_option("--noise-scale", options.noise_scale, "Standard deviation at the median depth")
-          ->check(CLI::PositiveNumber)
+          ->check(positiveNumber())
           ->type_name("LENGTH")
           ->option_text("from the overlap of the views")
           ->excludes(sensor),

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "arguments.h"
+#include "cli/number_check.h"
 #include "cli/one_of.h"
 #include "commands.h"
 #include "json_file.h"
@@ -142,7 +143,7 @@ void run(Request request) {
   request.options.domain = boxOf(request.box);
   const ImageSet set = readPhotographs(request.input, request.read, request.views);
   if (!request.quiet) printNotes(request, set);
-  const ProgressLine line(request.quiet);
+  const ProgressLine line(request.quiet, {{"matching", 2}, {"cross-checking", 5}, {"write", 2}});
   StereoResult result = computeDepthMaps(set.photographs, request.options, line.progress());
   const StereoSummary summary = summarise(result);
   makeFileNames(result.views);
@@ -172,7 +173,7 @@ void addInputOptions(CLI::App& app, Request& request) {
       ->type_name("FOLDER")
       ->option_text("what lies in the data set");
   app.add_option("--views", request.views, "Use the first N photographs only")
-      ->check(CLI::Range(2, 1 << 30))
+      ->check(numberBetween(2, 1 << 30))
       ->type_name("N")
       ->option_text("all");
   app.add_option("--bbox", request.box, "Box in which depths are looked for")
@@ -181,11 +182,11 @@ void addInputOptions(CLI::App& app, Request& request) {
       ->type_name("x0,y0,z0,x1,y1,z1")
       ->option_text("what the data set says, or where the cameras look");
   app.add_option("--min-depth", request.options.min_depth, "Least depth that is looked for")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("LENGTH")
       ->option_text("what the data set says, or from the cameras");
   app.add_option("--max-depth", request.options.max_depth, "Largest depth that is looked for")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonNegativeNumber())
       ->type_name("LENGTH")
       ->option_text("what the data set says, or from the cameras");
 }

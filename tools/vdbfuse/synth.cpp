@@ -279,18 +279,39 @@ void addPhotographOptions(CLI::App& app, Request& request) {
   app.add_flag("--images-only", request.images_only, "Cameras and pictures, no depth maps")->needs(textured);
 }
 
-void addCameraOptions(CLI::App& app, Request& request) {
+std::string text(double value) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%g", value);
+  return number;
+}
+
+// What --preset decides where the command line does not.
+std::vector<FoundValue> presetValues(const SynthOptions& o) {
+  const std::string why = "--preset";
+  return {{"views", std::to_string(o.views), why},
+          {"arc", nameOf(kArcs, o.arc), why},
+          {"noise-law", nameOf(kNoiseLaws, o.noise_law), why},
+          {"noise-scale", text(noiseScale(o)), why},
+          {"quantum", text(o.quantum), why},
+          {"background", nameOf(kBackgrounds, o.background), why},
+          {"focal", text(focalLength(o)), why}};
+}
+
+// Returns --preset.
+CLI::Option* addCameraOptions(CLI::App& app, Request& request) {
   SynthOptions& o = request.options;
   app.option_defaults()->group("Scene and cameras");
   // The first option: those after it overrule the preset.
-  app.add_option_function<std::string>(
-         "--preset", [&request](const std::string&) { request.options = kinectOptions(); },
-         "kinect: 24 views from above, focal length 525, structured-light noise, depths in millimetres; for "
-         "the "
-         "scene ball")
-      ->transform(oneOf({"kinect"}))
-      ->type_name("WORD")
-      ->option_text("none");
+  CLI::Option* preset =
+      app.add_option_function<std::string>(
+             "--preset", [&request](const std::string&) { request.options = kinectOptions(); },
+             "kinect: 24 views from above, focal length 525, structured-light noise, depths in millimetres; "
+             "for "
+             "the "
+             "scene ball")
+          ->transform(oneOf({"kinect"}))
+          ->type_name("WORD")
+          ->option_text("none");
   app.add_option("--views", o.views, "Number of cameras")->type_name("N")->capture_default_str();
   addChoice(app, "--arc", o.arc, kArcs, "Where they stand");
   app.add_option("--size", request.size, "Of each depth map")->type_name("WxH")->capture_default_str();
@@ -300,6 +321,7 @@ void addCameraOptions(CLI::App& app, Request& request) {
       ->capture_default_str();
   addChoice(app, "--background", o.background, kBackgrounds, "What lies behind the object");
   app.add_option("--seed", o.seed, "Of the random numbers")->type_name("N")->capture_default_str();
+  return preset;
 }
 
 }  // namespace
@@ -319,7 +341,7 @@ void addSynth(CLI::App& app, Action& action) {
       ->type_name("NAME")
       ->required();
   sub.add_option("OUTDIR,--output", request->folder, "Folder to write")->type_name("FOLDER")->required();
-  addCameraOptions(sub, *request);
+  const CLI::Option* preset = addCameraOptions(sub, *request);
   addSensorOptions(sub, *request);
   addPhotographOptions(sub, *request);
   sub.option_defaults()->group("Output");
@@ -327,8 +349,9 @@ void addSynth(CLI::App& app, Action& action) {
   sub.add_flag("--true-depth", request->true_depth, "Also write true_depth/*.pfm: 0 nothing to see");
   addJsonOption(sub, request->json, "Write scene.json here as well");
   addRunOptions(sub, *request);
-  sub.callback([request, &action] {
+  sub.callback([request, preset, &action] {
     request->options = resolved(*request);
+    if (preset->count() > 0) action.found = presetValues(request->options);
     action = [request] { run(*request); };
   });
 }

@@ -99,7 +99,7 @@ CommandInfo describe(const CLI::App& command) {
   if (parent != nullptr) addOptions(*parent, info);
   // What all subcommands have belongs to the end, and help there, once; the version to the tool itself.
   std::vector<ArgumentInfo>& options = info.options;
-  const std::string common = command.get_help_ptr()->get_group();
+  const std::string common = (parent != nullptr ? *parent : command).get_help_ptr()->get_group();
   std::stable_partition(options.begin(), options.end(),
                         [&](const ArgumentInfo& o) { return o.group != common; });
   const auto help =

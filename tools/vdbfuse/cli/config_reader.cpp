@@ -11,6 +11,7 @@
 
 #include "cli/command_tree.h"
 #include "cli/nearest.h"
+#include "cli/one_of.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -90,22 +91,32 @@ toml::table parse(std::istream& input, const std::string& path) {
   }
 }
 
-// Gives the option its value; false for a flag that is not set.
-bool give(CLI::Option& option, const Entry& entry) {
+bool isSameValue(const std::string& a, const std::string& b) {
+  double x = 0, y = 0;
+  return a == b || (CLI::detail::lexical_cast(a, x) && CLI::detail::lexical_cast(b, y) && x == y);
+}
+
+// The default need not be given, and does not count as given: an option that means something only together
+// with others may stand in the file as long as it is left as it is.
+bool isDefault(const CLI::Option& option, const std::vector<std::string>& words) {
+  return option.get_option_text().empty() && isSameValue(joined(words, ","), option.get_default_str());
+}
+
+// Gives the option its value, where that is not the one it has.
+void give(CLI::Option& option, const Entry& entry) {
   const std::vector<std::string> words = wordsOf(*entry.value);
   const bool is_flag = option.get_expected_min() == 0;
   if (words.empty()) fail(entry.place, "expected a value of '" + option.get_lnames().front() + "'");
   if (is_flag && !entry.value->is_boolean())
     fail(entry.place,
          "expected true or false for '" + option.get_lnames().front() + "', found '" + words.front() + "'");
-  if (is_flag && words.front() == "false") return false;
+  if (is_flag ? words.front() == "false" : isDefault(option, words)) return;
   try {
     option.add_result(words);
     option.run_callback();
   } catch (const CLI::ParseError& error) {
     fail(entry.place, error.what());
   }
-  return true;
 }
 
 void refuseUnknown(const Entries& entries, const std::vector<std::string>& known) {
@@ -154,7 +165,8 @@ std::vector<CLI::ConfigItem> ConfigReader::from_config(std::istream& input) cons
     const auto entry = entries.find(option->get_lnames().front());
     if (given.count(option) > 0) {
       option->run_callback();
-    } else if (entry != entries.end() && !excludesOneOf(*option, given) && give(*option, entry->second)) {
+    } else if (entry != entries.end() && !excludesOneOf(*option, given)) {
+      give(*option, entry->second);
       places_[option] = entry->second.place;
     }
   }

@@ -7,8 +7,9 @@
 //   bbox = [0, 0, 0, 1, 1, 1]
 //   carve = true           # a flag
 //
-// What stands before the first section counts for the subcommand that is run. The command line wins over the
-// file. A key that the subcommand does not know is an error.
+// A key whose value is the option's default counts as not given. What stands before the first section counts
+// for the subcommand that is run. The command line wins over the file. A key that the subcommand does not
+// know is an error.
 #pragma once
 
 #include <CLI/App.hpp>

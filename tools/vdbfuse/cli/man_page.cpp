@@ -87,6 +87,9 @@ std::string subcommandsOf(const CLI::App& app) {
   return text;
 }
 
+// Of the last change of the command line.
+constexpr const char* kDate = "2026-11-28";
+
 constexpr const char* kCommon = R"(.SH CONFIGURATION
 A file given by
 .B \-\-config
@@ -156,9 +159,9 @@ std::string manPage(const CLI::App& app, const CLI::App& command) {
   const bool is_tool = &app == &command;
   std::string summary = info.summary;
   summary[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(summary[0])));
-  return ".TH " + upper(roff(manPageName(command))) +
-         " 1 \"\" \"vdbfuse " VDBFUSE_VERSION "\" \"vdbfuse\"\n.SH NAME\n" + roff(manPageName(command)) +
-         " \\- " + roff(summary) + "\n.SH SYNOPSIS\n.B " + roff(info.name) + "\n" +
+  return ".TH " + upper(roff(manPageName(command))) + " 1 " + kDate +
+         " \"vdbfuse " VDBFUSE_VERSION "\" \"vdbfuse\"\n.SH NAME\n" + roff(manPageName(command)) + " \\- " +
+         roff(summary) + "\n.SH SYNOPSIS\n.B " + roff(info.name) + "\n" +
          (is_tool ? ".I COMMAND\n[OPTIONS]\n" : roff(usageOf(info)) + "\n") + ".SH DESCRIPTION\n" +
          paragraphs(info.summary + "." + (info.details.empty() ? "" : "\n\n" + info.details)) +
          examplesOf(info) + (is_tool ? subcommandsOf(app) : "") + optionsOf(info) + kCommon +

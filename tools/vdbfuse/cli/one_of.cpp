@@ -11,14 +11,14 @@ namespace {
 
 constexpr const char* kName = "one of";
 
-std::vector<std::string> split(const std::string& text) {
+}  // namespace
+
+std::vector<std::string> split(const std::string& text, char between) {
   std::vector<std::string> words;
   std::istringstream stream(text);
-  for (std::string word; std::getline(stream, word, '|');) words.push_back(word);
+  for (std::string word; std::getline(stream, word, between);) words.push_back(word);
   return words;
 }
-
-}  // namespace
 
 std::string joined(const std::vector<std::string>& words, const std::string& between) {
   std::string all;
@@ -46,7 +46,7 @@ std::vector<std::string> choicesOf(const CLI::Option& option) {
   for (int i = 0;; ++i) {
     try {
       const CLI::Validator& check = *writable.get_validator(i);
-      if (check.get_name() == kName) return split(check.get_description());
+      if (check.get_name() == kName) return split(check.get_description(), '|');
     } catch (const CLI::OptionNotFound&) {
       return {};
     }

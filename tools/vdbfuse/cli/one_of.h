@@ -15,6 +15,7 @@ CLI::Validator oneOf(const std::vector<std::string>& words);
 /// The words of oneOf() among the option's checks; none: anything goes.
 std::vector<std::string> choicesOf(const CLI::Option& option);
 
+std::vector<std::string> split(const std::string& text, char between);
 std::string joined(const std::vector<std::string>& words, const std::string& between);
 
 /// Adds an option that sets `target` to the value of one of the names. Its default is what `target` holds.

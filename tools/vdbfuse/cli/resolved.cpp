@@ -84,16 +84,19 @@ bool hasLiteralDefault(const ArgumentInfo& a) {
 std::optional<std::string> assignment(const ArgumentInfo& a) {
   if (a.is_flag) return a.key + (a.option->count() > 0 ? " = true" : " = false");
   if (a.option->count() > 0) return a.key + " = " + tomlOf(a, a.option->results());
-  if (hasLiteralDefault(a)) return a.key + " = " + tomlOf(a, std::vector<std::string>{a.fallback});
-  return std::nullopt;
+  if (!hasLiteralDefault(a)) return std::nullopt;
+  if (a.value == "WORDS") return a.key + " = " + tomlOf(a, split(a.fallback, ','));
+  return a.key + " = " + tomlOf(a, std::vector<std::string>{a.fallback});
 }
 
 std::string savedLine(const ArgumentInfo& a, const FoundValue* found) {
   const std::string note = found == nullptr ? "" : found->value + ", " + found->why;
   const std::optional<std::string> line = assignment(a);
-  if (!line) return "# " + a.key + ": " + (note.empty() ? a.fallback : note) + "\n";
-  const bool is_written_beside = a.group == "Output" && isPath(a) && !a.by_place;
   const bool is_found = found != nullptr && a.option->count() == 0;
+  // "auto" may stand for what was found; any other default was overruled.
+  if (!line || (is_found && a.fallback != "auto"))
+    return "# " + a.key + ": " + (note.empty() ? a.fallback : note) + "\n";
+  const bool is_written_beside = a.group == "Output" && isPath(a) && !a.by_place;
   return (is_written_beside ? "# " : "") + *line + (is_found ? "  # " + note : "") + "\n";
 }
 
@@ -107,6 +110,7 @@ std::string whyText(const ArgumentInfo& a, const ConfigReader& config) {
   const std::string place = config.placeOf(*a.option);
   if (!place.empty()) return place;
   if (a.option->count() > 0) return "command line";
+  if (a.fallback.empty() && !a.is_flag) return "not given";
   return hasLiteralDefault(a) || a.is_flag ? "default" : "default: " + a.fallback;
 }
 

@@ -47,6 +47,18 @@ std::string missingArguments(const CLI::App& command, const std::string& otherwi
   return joined(missing, " and ") + (missing.size() == 1 ? " is missing" : " are missing");
 }
 
+// "--voxel: ..." of the parser's message.
+std::string describeMismatch(const CLI::App& command, const std::string& message) {
+  const std::string name = message.substr(0, message.find(':'));
+  for (const ArgumentInfo& option : describe(command).options) {
+    if ("--" + option.key != name) continue;
+    const int count = option.option->get_items_expected_min();
+    return name + " needs " + (count == 1 ? "a value" : std::to_string(count) + " values") + ": " +
+           signatureOf(option);
+  }
+  return message;
+}
+
 std::string describeExtra(const CLI::App& app, const std::string& extra) {
   if (&chosen(app) != &app) return "'" + extra + "' is one argument too many";
   return "unknown command '" + extra + "'" + didYouMean(extra, commandNames(app));
@@ -62,6 +74,8 @@ std::string commandOf(const CLI::App& app) {
 std::string describeUsageError(const CLI::App& app, const CLI::ParseError& error) {
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  const bool is_short = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+  if (is_short) return describeMismatch(chosen(app), error.what());
   if (!is_extra && !is_missing) return error.what();
   const std::vector<std::string> left = app.remaining(true);
   const CLI::App& command = chosen(app);
