@@ -9,7 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/number_check.h"
 #include "commands.h"
+#include "interrupts.h"
+#include "run_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/base/version.h"
@@ -21,10 +24,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
-  std::string mesh, truth, regions, json;
+struct Arguments : RunArguments {
+  std::string mesh, truth, regions;
   EvaluateOptions options;
-  int threads = 0;
 };
 
 // JSON has no infinity: an accuracy without a mesh is null.
@@ -115,49 +117,62 @@ void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   // Before the work, so that a place that cannot be written to is known at once.
   std::optional<AtomicFile> json;
-  if (!arguments.json.empty()) json.emplace(arguments.json);
+  if (isFile(arguments.json)) json.emplace(arguments.json);
   const std::vector<Region> regions =
       arguments.regions.empty() ? std::vector<Region>{} : readRegions(arguments.regions);
   const TriangleMesh truth = readMesh(arguments.truth), mesh = readMesh(arguments.mesh);
   if (truth.triangles.empty()) throw IoError(arguments.truth, "", "a mesh with triangles", "none");
   const Evaluation evaluation = evaluate(mesh, truth, arguments.options, regions);
-  print(evaluation);
-  if (json) writeJson(*json, toJson(arguments, evaluation));
+  stopIfInterrupted();
+  if (speaks(arguments)) print(evaluation);
+  if (json) {
+    writeJson(*json, toJson(arguments, evaluation));
+  } else {
+    report(arguments, toJson(arguments, evaluation));
+  }
 }
 
 }  // namespace
 
 void addEvaluate(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("evaluate",
-                         "Compare a mesh with the truth.\n"
-                         "Example: vdbfuse evaluate out.ply truth.ply --tau 0.01,0.02 --json out.json");
+  CLI::App& sub = *app.add_subcommand(
+      "evaluate",
+      "Compare a mesh with the truth\n\n"
+      "Accuracy, completeness, precision, recall and F-score at the distances of --tau, volume in common, "
+      "topology, and the regions of a scene that should be kept or open.");
+  sub.footer("vdbfuse evaluate out.ply truth.ply --tau 0.01,0.02 --json out.json");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("mesh", arguments->mesh, "The mesh to judge: .ply, .obj or .stl")->required();
-  command->add_option("truth", arguments->truth, "The true surface, in the same coordinates and unit")
+  sub.add_option("MESH,--input", arguments->mesh, "The mesh to judge: .ply, .obj or .stl")
+      ->type_name("FILE")
       ->required();
+  sub.add_option("TRUTH,--truth", arguments->truth, "The true surface, in the same coordinates and unit")
+      ->type_name("FILE")
+      ->required();
+  sub.option_defaults()->group("Measures");
   // Without extra arguments, so that --tau does not swallow the files after it.
-  command
-      ->add_option("--tau", arguments->options.taus,
-                   "Distances for precision, recall and F-score; the first also for completeness "
-                   "[1 % of the diagonal of the truth's bounding box]")
+  sub.add_option("--tau", arguments->options.taus,
+                 "Distances for precision, recall and F-score, with commas between them; the first also for "
+                 "completeness")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(CLI::PositiveNumber);
-  command
-      ->add_option("--deep", arguments->options.deep,
-                   "Also the volume lost and invented further than this from the true surface")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option(
-      "--regions", arguments->regions,
-      "JSON file of named regions known to be outside or inside: prints the share kept or open");
-  command->add_option(
-      "--json", arguments->json,
-      "Write the figures to this file (replaced if it exists); precision, recall and fscore are "
-      "arrays, one entry a tau");
-  command->add_option("--threads", arguments->threads, "Number of threads [all]")
-      ->check(CLI::NonNegativeNumber);
-  command->callback([arguments, &action] { action = [arguments] { run(*arguments); }; });
+      ->check(positiveNumber())
+      ->type_name("LENGTH")
+      ->option_text("1 % of the diagonal of the truth's bounding box");
+  sub.add_option("--deep", arguments->options.deep,
+                 "Also the volume lost and invented further than this from the true surface")
+      ->check(nonNegativeNumber())
+      ->type_name("LENGTH")
+      ->option_text("none");
+  sub.add_option("--regions", arguments->regions,
+                 "JSON file of named regions known to be outside or inside: prints the share kept or open")
+      ->type_name("FILE")
+      ->option_text("none");
+  addJsonOption(
+      sub, arguments->json,
+      "Write the figures to this file, replaced if it exists; precision, recall and fscore are arrays, "
+      "one entry a tau");
+  addRunOptions(sub, *arguments);
+  sub.callback([arguments, &action] { action = [arguments] { run(*arguments); }; });
 }
 
 }  // namespace vdbfuse::tool

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which instructions the inner loops use. Another set gives other last digits: the same input gives the same
+// result on every machine that has the set that is asked for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vdbfuse {
+
+/// The sets of vector instructions that this processor has and vdbfuse is built for, best first: "AVX2",
+/// "SSE4", "SSE2", …
+std::vector<std::string> simdTargets();
+
+/// Uses this set from now on and none that is better. Not while other threads compute. Throws InvalidArgument
+/// for a name that simdTargets() does not give.
+void useSimdTarget(const std::string& name);
+
+}  // namespace vdbfuse
