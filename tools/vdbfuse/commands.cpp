@@ -6,6 +6,7 @@
 #include "cli/one_of.h"
 #include "run_options.h"
 #include "vdbfuse/base/simd.h"
+#include "vdbfuse/base/version.h"
 
 namespace vdbfuse::tool {
 

@@ -10,6 +10,7 @@
 
 #include "cli/command_tree.h"
 #include "cli/one_of.h"
+#include "vdbfuse/base/version.h"
 
 namespace vdbfuse::tool {
 namespace {
