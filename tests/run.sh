@@ -4,8 +4,9 @@
 # and those of the cheap modules once more under the address and undefined-behaviour sanitizers, and feeds damaged files
 # to the readers.
 #
-#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, the
-#                           Debian packages in a clean system, the first steps of README.md in a clean clone
+#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, HTML
+#                           of the pages, replay, completion, manual pages, interrupts, full disks, the Debian packages in a
+#                           clean system, the first steps of README.md in a clean clone
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
 #   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
 set -euo pipefail
@@ -40,6 +41,22 @@ run_tests() {
   results+=("$name: $passed passed, ${bad:-0} failed")
   total_passed=$((${total_passed:-0} + passed))
   failed=$((failed + ${bad:-0}))
+}
+
+# run_script NAME COMMAND...: passed or failed, with the last line that the command says.
+run_script() {
+  local name=$1 log
+  shift
+  step "$name"
+  log=$(mktemp)
+  if "$@" | tee "$log"; then
+    results+=("$name: $(tail -n 1 "$log")")
+    total_passed=$((${total_passed:-0} + 1))
+  else
+    results+=("$name: FAILED: $(tail -n 1 "$log")")
+    failed=$((failed + 1))
+  fi
+  rm "$log"
 }
 
 # build NAME FOLDER PRESET [cmake arguments]
@@ -106,14 +123,12 @@ else
   build "Without PCL, static" build-static release -DVDBFUSE_WITH_PCL=OFF -DBUILD_SHARED_LIBS=OFF
   cmake --build build-static -j "$jobs"
   run_tests "static, without PCL" build-static -LE style
-  step "Pages and headers as HTML, without a warning (Doxygen)"
-  if cmake --build build --target vdbfuse_docs; then
-    results+=("documentation: passed")
-    total_passed=$((${total_passed:-0} + 1))
-  else
-    results+=("documentation: FAILED")
-    failed=$((failed + 1))
-  fi
+  run_script "Pages and headers as HTML, without a warning" cmake --build build --target vdbfuse_docs
+  run_script "Saved configurations give the same again" tests/tool/replay_test.sh build/bin/vdbfuse
+  run_script "Completion in bash and zsh" tests/tool/completion_test.sh build/bin/vdbfuse
+  run_script "Manual pages" tests/tool/manual_test.sh build/bin/vdbfuse
+  run_script "Ctrl-C during each step" tests/tool/interrupt_test.py build/bin/vdbfuse
+  run_script "Full disks" tests/tool/full_disk_test.py build/bin/vdbfuse
   step "Names in every file (clang-tidy)"
   if tests/style/tidy.sh build; then
     results+=("names: passed")

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
 
 #include "tool/run_tool.h"
 
@@ -65,7 +67,8 @@ TEST(Usage, WhatIsMissingIsNamed) {
 }
 
 TEST(Usage, WhatIsTooMuchIsNamed) {
-  EXPECT_EQ(usageComplaint(TemporaryFolder(), "fuse a b.ply c"), "vdbfuse fuse: 'c' is one argument too many");
+  EXPECT_EQ(usageComplaint(TemporaryFolder(), "fuse a b.ply c"),
+            "vdbfuse fuse: 'c' is one argument too many");
 }
 
 TEST(Usage, ANumberOutOfRangeSaysWhatWasExpected) {
@@ -78,8 +81,8 @@ TEST(Usage, ANumberOutOfRangeSaysWhatWasExpected) {
 
 TEST(Config, TheSavedRunGivesTheSameMeshAgain) {
   const TemporaryFolder folder;
-  const ToolResult first = runTool(folder, "fuse " + inScan("scan") +
-                                               " a.ply --resolution 32 --trim 0.3 --save-config run.toml --quiet");
+  const ToolResult first = runTool(
+      folder, "fuse " + inScan("scan") + " a.ply --resolution 32 --trim 0.3 --save-config run.toml --quiet");
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const ToolResult again = runTool(folder, "fuse --config run.toml --output b.ply --quiet");
   ASSERT_EQ(again.exit_code, 0) << again.err;
@@ -104,8 +107,8 @@ TEST(Config, TheSavedRunNamesEveryOptionAndTheVersion) {
 TEST(Config, TheCommandLineWinsOverTheFile) {
   const TemporaryFolder folder;
   writeText(folder / "run.toml", "[fuse]\nresolution = 16\nmethod = \"tsdf\"\n");
-  const ToolResult run = runTool(folder, "fuse " + inScan("scan") +
-                                             " a.ply --config run.toml --resolution 24 --json a.json --quiet");
+  const ToolResult run = runTool(
+      folder, "fuse " + inScan("scan") + " a.ply --config run.toml --resolution 24 --json a.json --quiet");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto json = nlohmann::json::parse(readText(folder / "a.json"));
   EXPECT_EQ(json["options"]["method"], "tsdf");
@@ -212,11 +215,15 @@ TEST(Explain, TellsWhatTheRunThenUses) {
 
 TEST(Quiet, AndJsonOnStandardOutputLeaveNoWordsThere) {
   const TemporaryFolder folder;
-  for (const std::string command :
-       {"info " + inScan("scan"), "fuse " + inScan("scan") + " a.ply --resolution 16",
-        std::string("render a.ply a.png --size 64x48"), std::string("formats"),
-        "evaluate a.ply " + inScan("scan/truth.ply"), "judge " + inScan("scan") + " judged",
-        "convert " + inScan("scan") + " rgbd --to rgbd", std::string("synth sphere s --views 2 --size 32x24")}) {
+  const std::vector<std::string> commands = {"info " + inScan("scan"),
+                                             "fuse " + inScan("scan") + " a.ply --resolution 16",
+                                             "render a.ply a.png --size 64x48",
+                                             "formats",
+                                             "evaluate a.ply " + inScan("scan/truth.ply"),
+                                             "judge " + inScan("scan") + " judged",
+                                             "convert " + inScan("scan") + " rgbd --to rgbd",
+                                             "synth sphere s --views 2 --size 32x24"};
+  for (const std::string& command : commands) {
     const ToolResult run = runTool(folder, command + " --json -");
     ASSERT_EQ(run.exit_code, 0) << command << run.err;
     const auto json = nlohmann::json::parse(run.out, nullptr, false);

@@ -38,7 +38,7 @@ class Disk:
             self.limit = size
             return
         used = sum((p.stat().st_size + PAGE - 1) // PAGE * PAGE for p in self.folder.rglob("*") if p.is_file())
-        subprocess.run(["mount", "-o", f"remount,size={used + max(size, 1)}", str(self.folder)], check=True)
+        subprocess.run(["mount", "-o", f"remount,size={used + size}", str(self.folder)], check=True)
 
     def prepare(self):
         """In the new process."""

@@ -25,7 +25,7 @@ replay() {
 }
 
 replay synth scan synth figure --arc ring --views 16 --size 160x120 --outliers 0.05 --textured
-replay photographs photographs synth figure --views 8 --size 160x120 --textured --images-only
+replay photographs photographs synth figure --arc ring --views 16 --size 320x240 --textured --images-only
 replay preset ball synth ball --preset kinect --views 3
 replay fuse mesh.ply fuse scan
 replay given given.glb fuse scan --resolution 64 --lambda 40 --outliers 0.1 --bbox=-0.3,-0.3,-0.5,0.3,0.3,0.5 --trim 0.3

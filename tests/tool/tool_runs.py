@@ -30,7 +30,7 @@ def make_inputs(tool, folder, quick):
 def runs(inputs, quick):
     scan, photographs = str(inputs / "scan"), str(inputs / "photographs")
     mesh, grids = str(inputs / "mesh.ply"), str(inputs / "grids.vdb")
-    resolution, views = ("96", "40") if quick else ("320", "150")
+    resolution, views = ("96", "16") if quick else ("320", "150")
     return [
         Run("fuse", ["fuse", scan, "out.ply", "--resolution", resolution, "--save-grids", "out.vdb", "--json",
                      "out.json", "--save-config", "out.toml"], ["out.ply", "out.vdb", "out.json", "out.toml"]),

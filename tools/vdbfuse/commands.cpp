@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands.h"
 
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
 #include "cli/config_reader.h"
 #include "cli/help.h"
 #include "cli/one_of.h"
 #include "run_options.h"
+#include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/simd.h"
 #include "vdbfuse/base/version.h"
 
@@ -23,6 +29,18 @@ void addCommands(CLI::App& app, Action& action) {
   addSynth(app, action);
   addCompletion(app, action);
   addManual(app, action);
+}
+
+std::vector<Output> takeConfig(const CLI::App& command, Action& action) {
+  if (action.save_config.empty()) return {};
+  const std::string text = savedConfig(command, action.found);
+  const auto write = [text](const std::filesystem::path& path) {
+    std::ofstream file(path);
+    file << text;
+    file.close();
+    if (!file) throw IoError(path, "cannot be written: " + std::generic_category().message(errno));
+  };
+  return {{std::exchange(action.save_config, {}), write}};
 }
 
 void declareCommandLine(CLI::App& app, Action& action) {

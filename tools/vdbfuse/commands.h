@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/resolved.h"
+#include "vdbfuse/io/atomic_file.h"
 
 namespace vdbfuse::tool {
 
@@ -30,6 +31,10 @@ struct Action {
 /// Everything that the tool understands: options of all subcommands, and all subcommands. `action` must
 /// outlive the parsing.
 void declareCommandLine(CLI::App& app, Action& action);
+
+/// What --save-config asks for, for a subcommand that writes it together with its results; from then on it
+/// is nothing that main() would have to do. Empty without it.
+std::vector<Output> takeConfig(const CLI::App& command, Action& action);
 
 void addCompletion(CLI::App& app, Action& action);
 void addConvert(CLI::App& app, Action& action);

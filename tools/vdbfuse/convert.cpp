@@ -69,8 +69,9 @@ void run(const Request& request) {
     writeDepthSet(output.temporaryPath(), request.to, set.views, request.write, line.progress());
   }
   const DepthReading reading = readDepthSet(output.temporaryPath(), readBack(request)).reading;
+  JsonReport json(request, jsonOf(request, set, reading));
   output.commit();
-  report(request, jsonOf(request, set, reading));
+  json.commit();
   if (request.quiet) return;
   if (request.write.depth_scale && reading.scale != *request.write.depth_scale)
     std::fprintf(stderr, "note: %s has no place for the step; tell its readers (--depth-scale %g)\n",

@@ -128,7 +128,7 @@ void run(const Arguments& arguments) {
   if (json) {
     writeJson(*json, toJson(arguments, evaluation));
   } else {
-    report(arguments, toJson(arguments, evaluation));
+    JsonReport(arguments, toJson(arguments, evaluation)).commit();
   }
 }
 

@@ -87,7 +87,7 @@ void run(const FormatsOptions& options) {
   Json json = tool::jsonOf("formats");
   json["depth_maps"] = jsonOf(depthSetFormats(), path);
   json["photographs"] = jsonOf(imageSetFormats(), path);
-  report(options, json);
+  JsonReport(options, json).commit();
 }
 
 }  // namespace

@@ -35,8 +35,8 @@ void requireNew(const fs::path& path, const FuseRequest& request) {
   const AtomicFile can_be_written(path);  // never committed: leaves nothing
 }
 
-void writeOutputs(const FuseRequest& request, const Reconstruction& result, const FuseContext& context) {
-  std::vector<Output> outputs;
+void writeOutputs(const FuseRequest& request, const Reconstruction& result, const FuseContext& context,
+                  std::vector<Output> outputs) {
   if (!request.grids.empty()) {
     outputs.push_back({request.grids, [&](const fs::path& path) {
                          std::vector<const ScalarGrid*> grids;
@@ -142,14 +142,14 @@ void requireOutputs(const FuseRequest& request) {
   if (isFile(request.json)) requireNew(request.json, request);
 }
 
-void fuse(FuseRequest request, std::vector<FoundValue>& found) {
+void fuse(FuseRequest request, const CLI::App& command, Action& action) {
   const ThreadLimit threads(request.threads);
   requireOutputs(request);
   resolve(request);
   ProgressLine line(request.quiet);
   const Input input = readInput(request, line.progress());
   JudgedScan scan = judged(input.set, request, line);
-  found = foundValues(request, scan, resolveParameters(scan, request.reconstruct), input.set.format);
+  action.found = foundValues(request, scan, resolveParameters(scan, request.reconstruct), input.set.format);
   if (request.explain) return;
   Reconstruction result = reconstruct(std::move(scan), request.reconstruct, line.progress());
   if (request.color == "auto") {
@@ -162,8 +162,8 @@ void fuse(FuseRequest request, std::vector<FoundValue>& found) {
       request.input,       request.judgement,     input.set.format, input.set.views.size(),
       request.reconstruct, topology(result.mesh), input.stereo};
   stopIfInterrupted();
-  writeOutputs(request, result, context);
-  if (!isFile(request.json)) report(request, fuseJson(result, context));
+  writeOutputs(request, result, context, takeConfig(command, action));
+  if (request.json == "-") std::printf("%s\n", jsonText(fuseJson(result, context)).c_str());
   if (speaks(request)) printFuseReport(result, context, request.output);
 }
 
@@ -188,7 +188,7 @@ void addFuse(CLI::App& app, Action& action) {
   addFuseOptions(sub, *request);
   sub.callback([&action, request] {
     refuse("options", validate(request->photographs.stereo));
-    action = [&action, request] { fuse(*request, action.found); };
+    action = [&sub, &action, request] { fuse(*request, sub, action); };
   });
 }
 

@@ -200,7 +200,7 @@ Json jsonOf(const InfoOptions& options, const ImageSet& set, const PhotographsSu
 void runOnPhotographs(const InfoOptions& options) {
   const ImageSet set = readImageSet(options.input, {options.read.format, options.read.masks});
   const PhotographsSummary summary(set.photographs);
-  report(options, jsonOf(options, set, summary));
+  JsonReport(options, jsonOf(options, set, summary)).commit();
   if (speaks(options)) print(set, summary);
 }
 
@@ -216,7 +216,7 @@ void run(const InfoOptions& options) {
   if (summary.valid_pixels == 0)
     throw IoError(options.input, "", "depth maps that hold depths", "none valid in any of them");
   const ConventionCheck check = checkConvention(set.views, set.stored_from_camera);
-  report(options, jsonOf(options, set, summary, check));
+  JsonReport(options, jsonOf(options, set, summary, check)).commit();
   if (speaks(options)) print(set, summary, check);
   if (!options.quiet) warnOf(check);
 }

@@ -56,9 +56,9 @@ void run(Request request) {
   const JudgedScan scan = judgeScan(set.views, request.options, line.progress());
   const JudgementOrigin origin{VDBFUSE_VERSION, request.input.string(), set.format};
   writeJudgement(folder.temporaryPath(), scan, origin);
-  if (isFile(request.json)) report(request, runJson(scan, origin));
+  JsonReport json(request, runJson(scan, origin));
   folder.commit();
-  if (!isFile(request.json)) report(request, runJson(scan, origin));
+  json.commit();
   if (speaks(request)) std::printf("%s", judgementText(scan).c_str());
 }
 

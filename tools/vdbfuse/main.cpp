@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <new>
 
 #include "cli/usage_error.h"
@@ -27,29 +26,19 @@ bool hasFlag(const CLI::App& command, const char* name) {
   return option != nullptr && option->count() > 0;
 }
 
-void saveConfig(const CLI::App& command, const Action& action) {
-  writeTogether({{action.save_config, [&](const std::filesystem::path& path) {
-                    std::ofstream file(path);
-                    file << savedConfig(command, action.found);
-                    file.close();
-                    if (!file) throw IoError(path, "cannot be written");
-                  }}});
-}
-
-void perform(const CLI::App& app, const Action& action) {
+void perform(const CLI::App& app, Action& action) {
   const CLI::App& command = *app.get_subcommands().front();
-  const bool saves = !action.save_config.empty();
-  if (saves && !hasFlag(command, "--overwrite")) refuseExisting(action.save_config);
+  if (!action.save_config.empty() && !hasFlag(command, "--overwrite")) refuseExisting(action.save_config);
   if (!action.simd.empty()) useSimdTarget(action.simd);
   action.run();
   const auto& config = dynamic_cast<const ConfigReader&>(*app.get_config_formatter());
   if (hasFlag(command, "--explain")) std::printf("%s", explain(command, config, action.found).c_str());
-  if (saves) saveConfig(command, action);
+  writeTogether(takeConfig(command, action));
   // A result that did not get through to a full disk is none.
   if (std::fflush(stdout) != 0) throw Error("standard output cannot be written");
 }
 
-int run(const CLI::App& app, const Action& action) {
+int run(const CLI::App& app, Action& action) {
   const Interrupts interrupts;
   try {
     perform(app, action);

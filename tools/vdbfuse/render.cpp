@@ -126,9 +126,10 @@ void run(const Request& request) {
     throw IoError(request.output, "", "no such file yet (or --overwrite)", "one");
   refuseExistingJson(request);
   const Image<Rgb8> picture = draw(request);
+  JsonReport json(request, jsonOf(request, picture));
   stopIfInterrupted();
   writePng(request.output, picture);
-  report(request, jsonOf(request, picture));
+  json.commit();
 }
 
 void addCameraOptions(CLI::App& app, Request& request) {

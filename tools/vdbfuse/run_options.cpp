@@ -2,9 +2,13 @@
 #include "run_options.h"
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <fstream>
+#include <system_error>
 
 #include "cli/number_check.h"
+#include "vdbfuse/base/errors.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -38,12 +42,22 @@ void refuseExistingJson(const RunArguments& arguments) {
   if (isFile(arguments.json) && !arguments.overwrite) refuseExisting(arguments.json);
 }
 
-void report(const RunArguments& arguments, const Json& json) {
+JsonReport::JsonReport(const RunArguments& arguments, const Json& json) {
   if (arguments.json.empty()) return;
-  if (arguments.json == kStandardOutput) {
-    std::printf("%s\n", jsonText(json).c_str());
+  text_ = jsonText(json) + "\n";
+  if (!isFile(arguments.json)) return;
+  file_.emplace(arguments.json);
+  std::ofstream file(file_->temporaryPath(), std::ios::binary);
+  file << text_;
+  file.close();
+  if (!file) throw IoError(arguments.json, "cannot be written: " + std::generic_category().message(errno));
+}
+
+void JsonReport::commit() {
+  if (file_) {
+    file_->commit();
   } else {
-    writeJson(arguments.json, json);
+    std::fputs(text_.c_str(), stdout);
   }
 }
 

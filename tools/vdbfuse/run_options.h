@@ -4,8 +4,11 @@
 
 #include <CLI/App.hpp>
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "json_file.h"
+#include "vdbfuse/io/atomic_file.h"
 
 namespace vdbfuse::tool {
 
@@ -33,7 +36,17 @@ bool speaks(const RunArguments& arguments);
 /// Throws IoError when the file of --json is there and may not be replaced. Ask before the work.
 void refuseExistingJson(const RunArguments& arguments);
 
-/// Writes the object where --json says; nothing without it. Throws IoError.
-void report(const RunArguments& arguments, const Json& json);
+/// What --json asks for; nothing without it. Written beside its place when it is made, before the result is
+/// put in its own, so that a full disk leaves neither. Throws IoError.
+class JsonReport {
+ public:
+  JsonReport(const RunArguments& arguments, const Json& json);
+  /// Puts the file in its place, or prints.
+  void commit();
+
+ private:
+  std::string text_;
+  std::optional<AtomicFile> file_;
+};
 
 }  // namespace vdbfuse::tool

@@ -150,9 +150,9 @@ void run(Request request) {
   writeFolder(folder.temporaryPath(), request, result, line.progress());
   const Json json = jsonOf(request, set, summary);
   writeJson(folder.temporaryPath() / "stereo.json", json);
-  if (isFile(request.json)) report(request, withTimes(json, summary));
+  JsonReport run_json(request, withTimes(json, summary));
   folder.commit();
-  if (!isFile(request.json)) report(request, withTimes(json, summary));
+  run_json.commit();
   if (speaks(request)) std::printf("%s", tableOf(summary).c_str());
 }
 

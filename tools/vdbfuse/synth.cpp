@@ -211,8 +211,9 @@ void run(const Request& request) {
   writeMesh(output.temporaryPath() / "truth.ply", scan.scene().truth);
   const ordered_json description = describe(scan, sum);
   writeText(output.temporaryPath() / "scene.json", description.dump(2) + "\n");
+  JsonReport json(request, description);
   output.commit();
-  report(request, description);
+  json.commit();
   if (!speaks(request)) return;
   std::printf("%s: %zu views %dx%d of %s, %.1f %% of the object's pixels wrong\n", request.folder.c_str(),
               scan.size(), options.width, options.height, scan.scene().name.c_str(),
