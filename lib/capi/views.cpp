@@ -29,6 +29,7 @@ vdbfuse_synth_options defaultSynth() {
   options.views = from.views, options.width = from.width, options.height = from.height;
   options.arc = VDBFUSE_ARC_FULL;
   options.noise_scale = from.noise_scale, options.outliers = from.outliers, options.seed = from.seed;
+  options.cell = SceneOptions().cell;
   return options;
 }
 
@@ -178,7 +179,7 @@ vdbfuse_status vdbfuse_views_synthesize(const char* scene, const vdbfuse_synth_o
     synth.views = from.views, synth.width = from.width, synth.height = from.height;
     synth.arc = arcOf(from.arc);
     synth.noise_scale = from.noise_scale, synth.outliers = from.outliers, synth.seed = from.seed;
-    return handleOf(SyntheticScan(makeScene(scene), synth).views());
+    return handleOf(SyntheticScan(makeScene(scene, {from.cell}), synth).views());
   });
 }
 

@@ -39,8 +39,9 @@ SIZE(view, 296);
 AT(synth_options, views, 8);
 AT(synth_options, arc, 20);
 AT(synth_options, noise_scale, 24);
-AT(synth_options, seed, 40);
-SIZE(synth_options, 48);
+AT(synth_options, cell, 40);
+AT(synth_options, seed, 48);
+SIZE(synth_options, 56);
 AT(topology, components, 8);
 AT(topology, euler_number, 32);
 AT(topology, is_closed, 40);
@@ -106,7 +107,8 @@ enum { kViews = 20, kWidth = 96, kHeight = 72 };  // at most
 static struct {
   int32_t views, width, height, resolution, threads;
   size_t triangles;  // that come of it at least
-} size = {kViews, kWidth, kHeight, 40, 0, 500};
+  double cell;       // of the scene
+} size = {kViews, kWidth, kHeight, 40, 0, 500, 1.0 / 160};
 
 static void take_a_small_size(void) {
   size.views = 12;
@@ -115,6 +117,7 @@ static void take_a_small_size(void) {
   size.resolution = 20;
   size.threads = 1;
   size.triangles = 100;
+  size.cell = 1.0 / 64;
 }
 
 static size_t view_count(void) { return (size_t)size.views; }
@@ -126,6 +129,7 @@ static vdbfuse_views* synthetic_figure(void) {
   synth.views = size.views;
   synth.width = size.width;
   synth.height = size.height;
+  synth.cell = size.cell;
   CHECK(vdbfuse_views_synthesize("figure", &synth, &views) == VDBFUSE_OK);
   CHECK(vdbfuse_views_count(views) == view_count());
   return views;
@@ -344,6 +348,8 @@ static void refuse_sources(void) {
   vdbfuse_synth_options synth;
   REFUSED(vdbfuse_synth_options_init(&synth, 4), VDBFUSE_INVALID_ARGUMENT, "struct_size is 4");
   CHECK(vdbfuse_synth_options_init(&synth, sizeof synth) == VDBFUSE_OK);
+  synth.cell = 0;
+  REFUSED(vdbfuse_views_synthesize("box", &synth, &views), VDBFUSE_INVALID_ARGUMENT, "cell");
   synth.arc = 9;
   REFUSED(vdbfuse_views_synthesize("box", &synth, &views), VDBFUSE_INVALID_ARGUMENT, "options.arc: 9");
   CHECK(views == NULL);

@@ -119,6 +119,7 @@ typedef struct vdbfuse_synth_options {
   int32_t arc;            ///< where the cameras stand: VDBFUSE_ARC_FULL
   double noise_scale;     ///< standard deviation at depth 1, in diagonals of the scene: 0.001
   double outliers;        ///< share of the pixels: 0
+  double cell;            ///< edge of the triangles of the scene, in its diagonals: 1/320
   uint64_t seed;          ///< 1
 } vdbfuse_synth_options;
 VDBFUSE_API vdbfuse_status vdbfuse_synth_options_init(vdbfuse_synth_options* options, uint64_t struct_size);
