@@ -138,7 +138,7 @@ else
     failed=$((failed + 1))
   fi
   run_script "Debian packages in a clean system" tests/package/clean_system.sh
-  run_script "First steps of README.md" tests/package/newcomer.sh
+  run_script "First steps of README.md" tests/package/newcomer.sh --with-cache
 fi
 
 step "Fuzzers of the readers, $fuzz_seconds s each"

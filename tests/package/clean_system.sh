@@ -65,8 +65,13 @@ in_root sh -ec '
 if [ "$with_pcl" = yes ]; then
   step "The PCL part"
   install_in_root "$(package libvdbfuse-pcl)"
-  printf '%s\n' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1' 'WIDTH 3' 'HEIGHT 3' 'POINTS 9' 'DATA ascii' \
-    '-.1 -.1 1' '0 -.1 1' '.1 -.1 1' '-.1 0 1' '0 0 1' '.1 0 1' '-.1 .1 1' '0 .1 1' '.1 .1 1' >"$root/work/cloud.pcd"
+  {
+    printf '%s\n' 'VERSION 0.7' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1' 'WIDTH 5' 'HEIGHT 4' \
+      'VIEWPOINT 0 0 0 1 0 0 0' 'POINTS 20' 'DATA ascii'
+    for y in -0.15 -0.05 0.05 0.15; do
+      for x in -0.2 -0.1 0 0.1 0.2; do echo "$x $y 1"; done
+    done
+  } >"$root/work/cloud.pcd"
   in_root vdbfuse info /work/cloud.pcd || fail "PCD files are not read"
 fi
 

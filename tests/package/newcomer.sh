@@ -1,16 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# tests/package/newcomer.sh [FOLDER]: does what a newcomer does with README.md alone, in a new clone of HEAD, without a
-# compiler cache, and says how long each step takes: first mesh and picture, first own data set, first program. The
-# commands and the program are taken from README.md as they stand there. FOLDER is the own data set: any that
-# `vdbfuse info` reads; without it the one in $VDBFUSE_DATA or ../shared/data, else a synthetic one.
+# tests/package/newcomer.sh [--with-cache] [FOLDER]: does what a newcomer does with README.md alone, in a new clone of
+# HEAD, without a compiler cache, and says how long each step takes: first mesh and picture, first own data set, first
+# program. The commands and the program are taken from README.md as they stand there. FOLDER is the own data set: any
+# that `vdbfuse info` reads; without it the one in $VDBFUSE_DATA or ../shared/data, else a synthetic one.
+# --with-cache: for checks, not for times: in build/newcomer/, where a compiler cache finds the same paths again.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source=$PWD
-data=${1:-${VDBFUSE_DATA:-$source/../shared/data}/kitchen-rgbd}
-work=$(mktemp -d)
+if [ "${1:-}" = --with-cache ]; then
+  shift
+  work=$PWD/build/newcomer
+  rm -rf "$work"
+  mkdir -p "$work"
+else
+  work=$(mktemp -d)
+  export CCACHE_DISABLE=1
+fi
 trap 'rm -rf "$work"' EXIT
-export CCACHE_DISABLE=1
+data=${1:-${VDBFUSE_DATA:-$source/../shared/data}/kitchen-rgbd}
 results=()
 
 # block HEADING LANGUAGE N: the Nth block of that language below that heading of README.md.
