@@ -43,19 +43,18 @@ run_tests() {
   failed=$((failed + ${bad:-0}))
 }
 
-# run_script NAME COMMAND...: passed or failed, with the last line that the command says.
+# run_script NAME COMMAND...: one result, with the last line that the command says; exit code 77: skipped.
 run_script() {
-  local name=$1 log
+  local name=$1 log code=0
   shift
   step "$name"
   log=$(mktemp)
-  if "$@" | tee "$log"; then
-    results+=("$name: $(tail -n 1 "$log")")
-    total_passed=$((${total_passed:-0} + 1))
-  else
-    results+=("$name: FAILED: $(tail -n 1 "$log")")
-    failed=$((failed + 1))
-  fi
+  "$@" | tee "$log" || code=$?
+  case $code in
+    0) results+=("$name: passed: $(tail -n 1 "$log")"); total_passed=$((${total_passed:-0} + 1)) ;;
+    77) results+=("$name: skipped: $(tail -n 1 "$log")") ;;
+    *) results+=("$name: FAILED: $(tail -n 1 "$log")"); failed=$((failed + 1)) ;;
+  esac
   rm "$log"
 }
 
@@ -68,19 +67,6 @@ build() {
     -DVDBFUSE_BUILD_EXAMPLES=ON -DVDBFUSE_WITH_PCL="$with_pcl" "$@" >"$folder.log" 2>&1 ||
     { cat "$folder.log"; exit 1; }
   rm "$folder.log"
-}
-
-# run_script NAME COMMAND...: one result; exit code 77: skipped.
-run_script() {
-  local name=$1 code=0
-  shift
-  step "$name"
-  "$@" || code=$?
-  case $code in
-    0) results+=("$name: passed"); total_passed=$((${total_passed:-0} + 1)) ;;
-    77) results+=("$name: skipped") ;;
-    *) results+=("$name: FAILED"); failed=$((failed + 1)) ;;
-  esac
 }
 
 step "Packages"
@@ -105,13 +91,7 @@ if [ "$all" = no ]; then
   cmake --build build-asan -j "$jobs" --target "${targets[@]}"
   for target in "${targets[@]}"; do
     module=${target#vdbfuse_test_}
-    if "build-asan/tests/$module/$target" --gtest_brief=1; then
-      results+=("sanitizers, $module: passed")
-      total_passed=$((${total_passed:-0} + 1))
-    else
-      results+=("sanitizers, $module: FAILED")
-      failed=$((failed + 1))
-    fi
+    run_script "sanitizers, $module" "build-asan/tests/$module/$target" --gtest_brief=1
   done
 else
   build "Sanitizers on everything" build-asan asan -DVDBFUSE_MODULES=
@@ -129,26 +109,12 @@ else
   run_script "Manual pages" tests/tool/manual_test.sh build/bin/vdbfuse
   run_script "Ctrl-C during each step" tests/tool/interrupt_test.py build/bin/vdbfuse
   run_script "Full disks" tests/tool/full_disk_test.py build/bin/vdbfuse
-  step "Names in every file (clang-tidy)"
-  if tests/style/tidy.sh build; then
-    results+=("names: passed")
-    total_passed=$((${total_passed:-0} + 1))
-  else
-    results+=("names: FAILED")
-    failed=$((failed + 1))
-  fi
+  run_script "Names in every file (clang-tidy)" tests/style/tidy.sh build
   run_script "Debian packages in a clean system" tests/package/clean_system.sh
   run_script "First steps of README.md" tests/package/newcomer.sh --with-cache
 fi
 
-step "Fuzzers of the readers, $fuzz_seconds s each"
-if tests/fuzz/run.sh "$fuzz_seconds"; then
-  results+=("fuzzers: nothing found")
-  total_passed=$((${total_passed:-0} + 1))
-else
-  results+=("fuzzers: FAILED")
-  failed=$((failed + 1))
-fi
+run_script "Fuzzers of the readers, $fuzz_seconds s each" tests/fuzz/run.sh "$fuzz_seconds"
 
 step "Results"
 printf '%s\n' "${results[@]}"
