@@ -21,5 +21,6 @@ void addRender(CLI::App& app, Action& action);
 void addStereo(CLI::App& app, Action& action);
 void addSynth(CLI::App& app, Action& action);
 void addEvaluate(CLI::App& app, Action& action);
+void addCompare(CLI::App& app, Action& action);
 
 }  // namespace vdbfuse::tool

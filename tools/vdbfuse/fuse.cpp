@@ -202,7 +202,8 @@ void writeOutputs(const Request& request, const Reconstruction& result, const Fu
                        }});
   }
   if (!request.json.empty()) {
-    outputs.push_back({request.json, [&](const fs::path& path) { writeFuseJson(path, result, context); }});
+    outputs.push_back(
+        {request.json, [&](const fs::path& path) { writeJson(path, fuseJson(result, context)); }});
   }
   outputs.push_back({request.output, [&](const fs::path& path) { writeMesh(path, result.mesh); }});
   writeTogether(outputs);
@@ -220,13 +221,6 @@ JudgedScan judged(const DepthSet& set, Request& request, const Progress& progres
 // Looks at one view: data sets have pictures for all of them, or for none.
 bool hasPictures(const ViewSequence& views) { return !views.load(0).map.color.empty(); }
 
-// No other convention is tried where the views agree well enough.
-ConventionOptions quickCheck() {
-  ConventionOptions options;
-  options.enough = 0.6;
-  return options;
-}
-
 Words wordsOf(const Request& request) { return request.quiet ? Words::Keep : Words::Print; }
 
 // What is fused. Depth maps are read without their pictures, which colour the mesh at the end.
@@ -238,7 +232,7 @@ struct Input {
 Input readInput(Request& request, const Progress& progress) {
   if (!takesPhotographs(request.input, request.sensor, request.photographs)) {
     Input input{readScan(request.input, request.sensor, wordsOf(request)), std::nullopt};
-    if (!request.quiet) warnOf(checkConvention(input.set.views, input.set.stored_from_camera, quickCheck()));
+    if (!request.quiet) warnOf(input.set);
     return input;
   }
   MatchedScan scan = matchPhotographs(request.input, request.sensor, request.photographs, request.reconstruct,

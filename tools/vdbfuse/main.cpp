@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   vdbfuse::tool::addRender(app, action);
   vdbfuse::tool::addSynth(app, action);
   vdbfuse::tool::addEvaluate(app, action);
+  vdbfuse::tool::addCompare(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
