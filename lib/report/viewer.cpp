@@ -77,7 +77,7 @@ std::string viewerHtml(const std::vector<ViewerMesh>& meshes, const std::vector<
                      {"ramp", ramp()},
                      {"colorings", coloringsJson(colorings)}};
   std::string html =
-      "<div id=\"viewer-buttons\" class=\"buttons\"></div>\n<div id=\"viewer\" class=\"panes\"" +
+      "<div id=\"viewer-buttons\" class=\"buttons\"></div>\n<div id=\"viewer-stage\" class=\"panes\"" +
       std::string(" style=\"--columns:") + std::to_string(meshes.size()) + "\">\n<canvas></canvas>\n";
   for (std::size_t i = 0; i < meshes.size(); ++i) html += pane(meshes[i], i);
   html += "</div>\n<p id=\"viewer-key\" class=\"key\"></p>\n";

@@ -36,7 +36,7 @@ TriangleMesh readReference(const fs::path& path) {
 // All that can be refused before the work begins.
 void check(const CompareRequest& request) {
   refuseToReplace(request.output, request.input);
-  if (!request.reference.empty()) refuseToReplace(request.output, request.reference);
+  if (!request.reference.empty()) refuseToReplace(request.output, request.reference, "the reference");
   if (!request.json.empty() && !request.overwrite) refuseExisting(request.json);
   if (request.slice != "auto") parsePlane(request.slice);
   if (!request.taus.empty() && request.reference.empty())
@@ -149,6 +149,8 @@ void addCompare(CLI::App& app, Action& action) {
       "Example: vdbfuse compare scan/ compared/ --reference truth.ply\n"
       "         vdbfuse compare scan/ compared/ --methods visibility,tsdf,constant --voxel 0.004");
   auto request = std::make_shared<CompareRequest>();
+  constexpr double kBalloon = 0.03;  // fills neither a figure's cavities nor loses its legs at once
+  request->options.evidence.balloon = kBalloon;
   sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
   sub.add_option("OUTDIR", request->output, "Folder to write")->required();
   addMethodOptions(sub, *request);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 #include <numeric>
 
 #include "vdbfuse/base/errors.h"
@@ -66,18 +67,19 @@ MeasuredMeshes measureMeshes(const CompareRequest& request, const fs::path& fold
   for (const MethodRecord& method : run.methods)
     all.meshes.push_back({method.name, readMesh(folder / method.mesh), {}, {}});
   ProgressStep step(progress, "measure", all.meshes.size());
-  double distance = run.voxel, support = 0;
+  double distance = std::numeric_limits<double>::infinity(), support = 0;
   for (std::size_t k = 0; k < all.meshes.size(); ++k) {
     ShownMesh& shown = all.meshes[k];
     support = std::max(support, largestOf(shown.mesh, shown.mesh.support));
     if (const TriangleMesh* target = targetOf(all, k)) {
       shown.distances = vertexDistances(shown.mesh, ClosestPoint(*target));
-      distance = std::max(distance, largestOf(shown.mesh, shown.distances));
+      distance = std::min(distance, largestOf(shown.mesh, shown.distances));
     }
     if (!all.reference.triangles.empty()) compareWithReference(request, all, shown, run.methods[k]);
     step.advance();
   }
-  all.largest_distance = roundedUp(distance), all.largest_support = roundedUp(support);
+  all.largest_distance = roundedUp(3 * std::max(distance, run.voxel / 3)),
+  all.largest_support = roundedUp(support);
   return all;
 }
 

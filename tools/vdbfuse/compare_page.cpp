@@ -65,8 +65,10 @@ Section pictures(const CompareRequest& request, const fs::path& folder, const Co
 
 Section support(const fs::path& folder, const CompareRun& run, const MeasuredMeshes& measured,
                 const ComparePictures& drawn) {
-  const std::string key = colorKey({{"rgb(240,120,20)", "none: invented"}}) +
-                          colorBar("few views", lengthText(measured.largest_support) + " views or more");
+  const std::string key =
+      colorKey(
+          {{"rgb(240,120,20)", "less than half a view: invented by the cut, hardly measured by the TSDF"}}) +
+      colorBar("few views", lengthText(measured.largest_support) + " views or more");
   return {"support", "Support",
           "How many views agree with each part of the surface (for the TSDF: the sum of their weights).",
           gridOf(folder, namesOf(run), drawn.support, key)};
@@ -108,9 +110,8 @@ Section slices(const fs::path& folder, const CompareRun& run) {
             "where it changes sides.",
             evidence, key),
       rowOf(folder,
-            "Where measurements agree: ρ of the cut, dark where a surface costs little; for the TSDF the "
-            "weight "
-            "of what was averaged.",
+            "Where measurements agree: the cost ρ of a surface, small where views agree; for the TSDF the "
+            "weight of what was averaged, large where they do.",
             weight, colorBar("little", "much")),
       rowOf(folder, "Cells of the octree, coloured by σ: fine where measurements agree, coarse elsewhere.",
             cells, key)};
@@ -132,7 +133,7 @@ Section viewer(const MeasuredMeshes& measured, const ComparePictures& drawn,
   for (const EmbeddedMesh& each : embedded) meshes.push_back(each.viewer);
   const std::vector<ViewerColoring> colorings = {
       {"Support", kSupportName, measured.largest_support, kSupported, "few views",
-       lengthText(measured.largest_support) + " or more; orange: none"},
+       lengthText(measured.largest_support) + " views or more; orange: less than half a view"},
       {"Distance", kDistanceName, measured.largest_distance, 0, "0",
        lengthText(measured.largest_distance) + " or more from " + measured.measured_from},
       {"Photographs", "color", 1, 0, "", ""}};

@@ -3,7 +3,7 @@
 (function () {
   "use strict";
   const state = document.documentElement.dataset;
-  const stage = document.getElementById("viewer");
+  const stage = document.getElementById("viewer-stage");
   const canvas = stage.querySelector("canvas");
   const panes = Array.from(stage.querySelectorAll(".pane"));
   const data = JSON.parse(document.getElementById("viewer-data").textContent);
