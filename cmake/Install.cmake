@@ -29,3 +29,6 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vdbfuseConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdbfuseConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vdbfuseConfig.cmake ${PROJECT_BINARY_DIR}/vdbfuseConfigVersion.cmake
         DESTINATION ${package_dir})
+if(VDBFUSE_THREE_DIR)  # a part of the library, then
+  install(FILES ${PROJECT_SOURCE_DIR}/lib/report/page/three_licence.txt DESTINATION ${CMAKE_INSTALL_DOCDIR})
+endif()

@@ -21,6 +21,7 @@ import zlib
 
 SKIPPED = 77
 WIDTH, HEIGHT = 1280, 3000
+SOFTWARE_WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
 def run(*command, **options):
@@ -96,7 +97,7 @@ class Requests(http.server.SimpleHTTPRequestHandler):
 def requests_of(browser, folder):
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Requests, directory=folder))
     threading.Thread(target=server.serve_forever, daemon=True).start()
-    browse(browser, f"http://127.0.0.1:{server.server_port}/report.html", "--dump-dom")
+    browse(browser, f"http://127.0.0.1:{server.server_port}/report.html", "--dump-dom", *SOFTWARE_WEBGL)
     server.shutdown()
     return sorted(set(Requests.seen))
 
@@ -113,7 +114,7 @@ def check(good, words):
 
 def check_page(browser, folder):
     page = "file://" + os.path.join(folder, "report.html")
-    dom, console = browse(browser, page, "--dump-dom")
+    dom, console = browse(browser, page, "--dump-dom", *SOFTWARE_WEBGL)
     variances = [float(each) for each in (attribute(dom, "variance") or "").split(",") if each]
     good = [
         check(not console, f"no words on the console {console}"),
@@ -123,7 +124,7 @@ def check_page(browser, folder):
         check("Support</button>" in dom, "the viewer has its buttons"),
     ]
     picture = os.path.join(folder, "screenshot.png")
-    browse(browser, page, "--screenshot=" + picture)
+    browse(browser, page, "--screenshot=" + picture, *SOFTWARE_WEBGL)
     rows, step = png_rows(picture)
     whole = variance(rows, step, 0, len(rows), 0, WIDTH)
     good.append(check(len(rows) == HEIGHT and whole > 100, f"the screenshot is not blank (variance {whole:.0f})"))

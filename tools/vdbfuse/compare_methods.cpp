@@ -87,7 +87,7 @@ class Recorder {
     run_.calibration = result.calibration;
     run_.width = result.width, run_.height = result.height;
     run_.box = result.grid.domain;
-    run_.plane = choosePlane(request_.slice, boundingBox(result.mesh));
+    run_.plane = choosePlane(request_.slice, boundingBox(result.mesh), run_.voxel);
   }
 
   const CompareRequest& request_;

@@ -138,8 +138,8 @@ Section viewer(const MeasuredMeshes& measured, const ComparePictures& drawn,
        lengthText(measured.largest_distance) + " or more from " + measured.measured_from},
       {"Photographs", "color", 1, 0, "", ""}};
   return {"viewer", "Viewer",
-          "One camera for all. Where the mesh is larger, what is shown is simplified; the whole ones lie in "
-          "meshes/ beside this page.",
+          "One camera for all. Large meshes are simplified here, and their smallest parts may be gone; the "
+          "whole ones lie in meshes/ beside this page. Violet: inner side, the mesh is open there.",
           viewerHtml(meshes, colorings, drawn.camera)};
 }
 
@@ -189,7 +189,7 @@ EmbeddedMesh embed(const ShownMesh& shown, std::size_t triangles) {
   mesh.confidence = shown.distances;
   const std::size_t all = mesh.triangles.size();
   if (all > triangles) {
-    simplify({triangles, 0}, mesh);
+    simplify({triangles, 0, SimplifyOptions::Topology::MayChange}, mesh);
     mesh.normals = vertexNormals(mesh);
   }
   std::vector<VertexValues> more;

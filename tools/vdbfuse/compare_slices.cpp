@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare_slices.h"
 
+#include <cmath>
+
 #include "render_slice.h"
 #include "vdbfuse/io/png.h"
 
@@ -33,11 +35,11 @@ PictureFile draw(const fs::path& folder, const std::string& file, const Levels& 
 
 }  // namespace
 
-SlicePlane choosePlane(const std::string& text, const Box& box) {
+SlicePlane choosePlane(const std::string& text, const Box& box, double voxel) {
   if (text != "auto") return parsePlane(text);
   int axis = 0;
   box.sizes().minCoeff(&axis);
-  return {axis, box.center()[axis]};
+  return {axis, voxel * std::round(box.center()[axis] / voxel) + 0.0};  // and not −0
 }
 
 void writeSlices(const fs::path& folder, const SlicePlace& place, const std::vector<ScalarGrid>& grids,

@@ -11,9 +11,9 @@
 
 namespace vdbfuse::tool {
 
-/// The plane of --slice; of 'auto' the one through the middle of `box` at right angles to its shortest side.
-/// Throws InvalidArgument.
-SlicePlane choosePlane(const std::string& text, const Box& box);
+/// The plane of --slice; of 'auto' the one through the middle of `box` at right angles to its shortest side,
+/// at a multiple of `voxel`. Throws InvalidArgument.
+SlicePlane choosePlane(const std::string& text, const Box& box, double voxel);
 
 struct SlicePlace {
   SlicePlane plane;

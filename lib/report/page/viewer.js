@@ -29,7 +29,7 @@
     return;
   }
 
-  const renderer = new THREE.WebGLRenderer({canvas: canvas, antialias: true});
+  const renderer = new THREE.WebGLRenderer({canvas: canvas, antialias: true, alpha: true});
   renderer.setPixelRatio(window.devicePixelRatio || 1);
   renderer.setScissorTest(true);
   renderer.autoClear = false;
