@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include "fusion/scenes.h"
 #include "io/temporary_folder.h"
 #include "vdbfuse/base/errors.h"
@@ -28,16 +30,16 @@ ReconstructOptions optionsOf(Method method) {
 const std::vector<MethodToCompare> kMethods = {{"cut", optionsOf(Method::Visibility)},
                                                {"average", optionsOf(Method::Tsdf)}};
 
-std::vector<ComparedMethod> compareAll(const std::vector<MethodToCompare>& methods,
-                                       const Progress& progress = {}) {
-  std::vector<ComparedMethod> all;
+std::deque<ComparedMethod> compareAll(const std::vector<MethodToCompare>& methods,
+                                      const Progress& progress = {}) {
+  std::deque<ComparedMethod> all;
   compareMethods(
       judgeScan(scan()), methods, [&](ComparedMethod method) { all.push_back(std::move(method)); }, progress);
   return all;
 }
 
 TEST(CompareMethods, EachResultIsThatOfTheMethodAlone) {
-  const std::vector<ComparedMethod> all = compareAll(kMethods);
+  const std::deque<ComparedMethod> all = compareAll(kMethods);
   ASSERT_EQ(all.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(all[k].name, kMethods[k].name);
@@ -50,7 +52,7 @@ TEST(CompareMethods, EachResultIsThatOfTheMethodAlone) {
 TEST(CompareMethods, AllHaveTheVoxelOfTheFirst) {
   std::vector<MethodToCompare> methods = kMethods;
   methods[1].options.resolution = 0, methods[1].options.voxel = 0.5;
-  const std::vector<ComparedMethod> all = compareAll(methods);
+  const std::deque<ComparedMethod> all = compareAll(methods);
   EXPECT_EQ(all[0].result.grid.voxel, all[1].result.grid.voxel);
   EXPECT_EQ(all[1].options.voxel, all[0].result.grid.voxel);
 }

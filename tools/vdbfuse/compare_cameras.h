@@ -24,6 +24,8 @@ struct CameraList {
   std::vector<NamedCamera> all;
   std::size_t front_index = 0;
   const NamedCamera& front() const { return all[front_index]; }
+  /// The view's, where there is one, else the last.
+  const NamedCamera& other() const { return front_index > 0 ? all.front() : all.back(); }
 };
 
 /// Three around `mesh`, the front being the side where the sensors were; and, before them, that of the middle

@@ -17,9 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The value that most of the area stays below.
-double largestOf(const TriangleMesh& mesh, const std::vector<float>& values) {
-  constexpr double kMostOfTheArea = 0.98;
+// The value that so much of the area stays below.
+double quantileByArea(const TriangleMesh& mesh, const std::vector<float>& values, double share) {
   const std::vector<double> areas = vertexAreas(mesh);
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -30,7 +29,7 @@ double largestOf(const TriangleMesh& mesh, const std::vector<float>& values) {
   double sum = 0;
   for (const std::size_t i : order) {
     sum += areas[i];
-    if (sum >= kMostOfTheArea * all) return values[i];
+    if (sum >= share * all) return values[i];
   }
   return 0;
 }
@@ -70,10 +69,10 @@ MeasuredMeshes measureMeshes(const CompareRequest& request, const fs::path& fold
   double distance = std::numeric_limits<double>::infinity(), support = 0;
   for (std::size_t k = 0; k < all.meshes.size(); ++k) {
     ShownMesh& shown = all.meshes[k];
-    support = std::max(support, largestOf(shown.mesh, shown.mesh.support));
+    support = std::max(support, quantileByArea(shown.mesh, shown.mesh.support, 0.98));
     if (const TriangleMesh* target = targetOf(all, k)) {
       shown.distances = vertexDistances(shown.mesh, ClosestPoint(*target));
-      distance = std::min(distance, largestOf(shown.mesh, shown.distances));
+      distance = std::min(distance, quantileByArea(shown.mesh, shown.distances, 0.9));
     }
     if (!all.reference.triangles.empty()) compareWithReference(request, all, shown, run.methods[k]);
     step.advance();

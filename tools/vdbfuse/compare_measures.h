@@ -23,8 +23,9 @@ struct MeasuredMeshes {
   std::vector<ShownMesh> meshes;
   /// What distances are measured from: "the reference", or "the other mesh" (the first, of the others).
   std::string measured_from;
-  /// At the light ends of the colours, two digits. Of the mesh whose distances are smallest 98 % of the area
-  /// lies below a third of the distance; of every mesh 98 % lies below the support.
+  /// At the light ends of the colours, two digits. Of the mesh whose distances are smallest 90 % of the area
+  /// lies below a third of the distance (which is a voxel at least); of every mesh 98 % lies below the
+  /// support.
   double largest_distance = 1, largest_support = 1;
 };
 

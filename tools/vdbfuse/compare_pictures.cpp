@@ -91,8 +91,9 @@ ComparePictures drawPictures(const CompareRequest& request, const fs::path& fold
   pictures.camera = {eye, boundingBox(framed).center(), up};
   for (const NamedCamera& camera : cameras.all)
     pictures.shaded.push_back(shadedRow(drawer, measured, camera));
-  addColoredRows(drawer, measured, cameras.front(), pictures);
-  addColoredRows(drawer, measured, cameras.all.back(), pictures);
+  for (const NamedCamera& camera : cameras.all)
+    if (&camera == &cameras.front() || &camera == &cameras.other())
+      addColoredRows(drawer, measured, camera, pictures);
   pictures.histograms = drawHistogramFiles(folder, measured);
   return pictures;
 }
