@@ -65,3 +65,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/vdbfuse.pc.in ${PROJECT_BINARY_DIR}/vdbfuse.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/vdbfuse.pc DESTINATION ${pkgconfig_dir} COMPONENT development)
+if(VDBFUSE_THREE_DIR)  # a part of the library, then
+  install(FILES ${PROJECT_SOURCE_DIR}/lib/report/page/three_licence.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}
+          COMPONENT runtime)
+endif()

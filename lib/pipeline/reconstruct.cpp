@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "pipeline/cells.h"
+#include "pipeline/fuse_judged.h"
 #include "pipeline/steps.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/fusion/agreement.h"
@@ -154,13 +155,22 @@ Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& 
 
 Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, const Progress& progress) {
   requireUsable(options);
+  useOptions(options, scan);
+  return fuseJudged(scan, options, progress);
+}
+
+void useOptions(const ReconstructOptions& options, JudgedScan& scan) {
+  if (options.domain) useDomain(*options.domain, scan.judgement);
+  scan.judgement.judged.sensor.prior_decay = options.prior_decay;
+}
+
+Reconstruction fuseJudged(const JudgedScan& scan, const ReconstructOptions& options,
+                          const Progress& progress) {
   Reconstruction result;
   StepTimer timer;
   result.width = scan.width, result.height = scan.height;
   result.memory = {scan.plan.memory_budget, scan.plan.estimated_memory, scan.plan.window_bytes};
   result.calibration = scan.calibration;
-  if (options.domain) useDomain(*options.domain, scan.judgement);
-  scan.judgement.judged.sensor.prior_decay = options.prior_decay;
   const JudgedViews& judged = scan.judgement.judged;
   const Parameters parameters = resolveParameters(scan, options);
 
@@ -176,7 +186,7 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
         "the result is empty: no surface inside the domain is supported by the depth maps "
         "(check units and poses with 'vdbfuse info', or give --bbox)");
   }
-  result.steps = std::move(scan.steps);
+  result.steps = scan.steps;
   for (StepTime& step : timer.finish()) result.steps.push_back(std::move(step));
   return result;
 }

@@ -26,6 +26,7 @@ void addCommands(CLI::App& app, Action& action) {
   addJudge(app, action);
   addRender(app, action);
   addEvaluate(app, action);
+  addCompare(app, action);
   addSynth(app, action);
   addCompletion(app, action);
   addManual(app, action);

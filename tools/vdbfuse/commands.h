@@ -36,6 +36,7 @@ void declareCommandLine(CLI::App& app, Action& action);
 /// is nothing that main() would have to do. Empty without it.
 std::vector<Output> takeConfig(const CLI::App& command, Action& action);
 
+void addCompare(CLI::App& app, Action& action);
 void addCompletion(CLI::App& app, Action& action);
 void addConvert(CLI::App& app, Action& action);
 void addEvaluate(CLI::App& app, Action& action);

@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/number_check.h"
 #include "commands.h"
+#include "evaluation_json.h"
 #include "interrupts.h"
 #include "run_options.h"
 #include "vdbfuse/base/errors.h"
@@ -22,63 +22,25 @@
 namespace vdbfuse::tool {
 namespace {
 
-using nlohmann::ordered_json;
-
 struct Arguments : RunArguments {
   std::string mesh, truth, regions;
   EvaluateOptions options;
 };
 
-// JSON has no infinity: an accuracy without a mesh is null.
-ordered_json finiteOrNull(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
-ordered_json orNull(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json();
-}
-
-ordered_json toJson(const Arguments& arguments, const Evaluation& e) {
-  ordered_json object;
-  object["version"] = VDBFUSE_VERSION;
-  object["command"] = "evaluate";
-  ordered_json taus, precision, recall, fscore;
-  for (const ScoreAtTau& score : e.scores) {
-    taus.push_back(score.tau);
-    precision.push_back(score.precision);
-    recall.push_back(score.recall);
-    fscore.push_back(score.fscore);
-  }
-  object["options"] = {{"mesh", arguments.mesh}, {"truth", arguments.truth}, {"tau", taus}};
+Json toJson(const Arguments& arguments, const Evaluation& e) {
+  Json object = jsonOf("evaluate");
+  object["options"] = {{"mesh", arguments.mesh}, {"truth", arguments.truth}, {"tau", tausOf(e)}};
   if (arguments.options.deep) object["options"]["deep"] = *arguments.options.deep;
   if (!arguments.regions.empty()) object["options"]["regions"] = arguments.regions;
-  object["accuracy90"] = finiteOrNull(e.accuracy90);
-  object["accuracy_rms"] = finiteOrNull(e.accuracy_rms);
-  object["completeness"] = e.completeness;
-  object["tau"] = taus;
-  object["precision"] = precision;
-  object["recall"] = recall;
-  object["fscore"] = fscore;
-  object["iou"] = orNull(e.iou);
+  object.update(evaluationJson(e));
   if (arguments.options.deep) {
     object["false_outside_volume_deep"] = orNull(e.false_outside_deep);
     object["false_inside_volume_deep"] = orNull(e.false_inside_deep);
   }
-  object["vertices"] = e.topology.used_vertices;
-  object["triangles"] = e.topology.triangles;
-  object["components"] = e.topology.components;
-  object["open_edges"] = e.topology.open_edges;
-  object["nonmanifold_edges"] = e.topology.nonmanifold_edges;
-  object["nonmanifold_vertices"] = e.topology.nonmanifold_vertices;
-  object["inconsistent_edges"] = e.topology.inconsistent_edges;
-  object["euler_number"] = e.topology.euler_number;
-  object["closed"] = isClosedManifold(e.topology);
-  object["regions"] = ordered_json::object();
-  for (const RegionShare& region : e.regions) object["regions"][region.name] = orNull(region.share);
   return object;
 }
 
-void writeJson(AtomicFile& target, const ordered_json& object) {
+void writeJson(AtomicFile& target, const Json& object) {
   std::ofstream file(target.temporaryPath());
   file << object.dump(2) << '\n';
   file.close();

@@ -104,13 +104,6 @@ JudgedScan judged(const DepthSet& set, FuseRequest& request, ProgressLine& line)
 // Looks at one view: data sets have pictures for all of them, or for none.
 bool hasPictures(const ViewSequence& views) { return !views.load(0).map.color.empty(); }
 
-// No other convention is tried where the views agree well enough.
-ConventionOptions quickCheck() {
-  ConventionOptions options;
-  options.enough = 0.6;
-  return options;
-}
-
 Words wordsOf(const FuseRequest& request) { return request.quiet ? Words::Keep : Words::Print; }
 
 // What is fused. Depth maps are read without their pictures, which colour the mesh at the end.
@@ -122,7 +115,7 @@ struct Input {
 Input readInput(FuseRequest& request, const Progress& progress) {
   if (!takesPhotographs(request.input, request.sensor, request.photographs)) {
     Input input{readScan(request.input, request.sensor, wordsOf(request)), std::nullopt};
-    if (!request.quiet) warnOf(checkConvention(input.set.views, input.set.stored_from_camera, quickCheck()));
+    if (!request.quiet) warnOf(input.set);
     return input;
   }
   MatchedScan scan = matchPhotographs(request.input, request.sensor, request.photographs, request.reconstruct,

@@ -59,11 +59,11 @@ void OutputFolder::commit() {
   temporary_->keep();
 }
 
-void refuseToReplace(const fs::path& output, const fs::path& input) {
+void refuseToReplace(const fs::path& output, const fs::path& input, const char* words) {
   std::error_code ignored;
   const fs::path from = fs::weakly_canonical(input, ignored), to = fs::weakly_canonical(output, ignored);
   const auto [rest, in_input] = std::mismatch(to.begin(), to.end(), from.begin(), from.end());
-  if (rest == to.end()) throw InvalidArgument("OUTDIR", "holds the input");
+  if (rest == to.end()) throw InvalidArgument("OUTDIR", std::string("holds ") + words);
 }
 
 }  // namespace vdbfuse::tool

@@ -26,7 +26,8 @@ class OutputFolder {
   std::optional<TemporaryPath> temporary_;
 };
 
-/// Throws InvalidArgument when replacing the folder `output` would remove `input`.
-void refuseToReplace(const std::filesystem::path& output, const std::filesystem::path& input);
+/// Throws InvalidArgument when replacing the folder `output` would remove `input`; `words` say what that is.
+void refuseToReplace(const std::filesystem::path& output, const std::filesystem::path& input,
+                     const char* words = "the input");
 
 }  // namespace vdbfuse::tool

@@ -103,6 +103,12 @@ void warnOf(const ConventionCheck& check) {
       nameOf(check.better->convention).c_str());
 }
 
+void warnOf(const DepthSet& set) {
+  ConventionOptions options;
+  options.enough = 0.6;
+  warnOf(checkConvention(set.views, set.stored_from_camera, options));
+}
+
 Json jsonOf(const ReadArguments& arguments) {
   Json json;
   json["format"] = arguments.format.empty() ? Json(nullptr) : Json(arguments.format);

@@ -68,17 +68,6 @@ ViewHeader camera(const Request& request, const TriangleMesh& mesh, const Vector
   return cameraLookingAt(vector(request.eye), target, up, request.width, request.height);
 }
 
-// Distance of each vertex from the surface of `reference`.
-std::vector<float> distances(const TriangleMesh& mesh, const TriangleMesh& reference) {
-  const ClosestPoint surface(reference);
-  std::vector<float> result(mesh.vertices.size());
-  parallelFor(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      result[i] = static_cast<float>(surface.query(mesh.vertices[i].cast<double>()).distance);
-  });
-  return result;
-}
-
 RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   RenderOptions options;
   options.up = axisNamed(request.up);
@@ -87,7 +76,7 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   if (request.color == "vertex") options.coloring = MeshColoring::Vertex;
   if (request.color == "error") {
     options.coloring = MeshColoring::Values;
-    options.values = distances(mesh, readMesh(request.reference));
+    options.values = vertexDistances(mesh, ClosestPoint(readMesh(request.reference)));
   }
   if (request.flat) options.normals = RenderOptions::Normals::Flat;
   if (!request.range.empty()) options.low = request.range[0], options.high = request.range[1];

@@ -8,26 +8,12 @@
 #include <vector>
 
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/report/slice.h"
 #include "vdbfuse/volume/leaf_index.h"
-#include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
 namespace {
 
-SlicePlane parsePlane(const std::string& text) {
-  const bool has_axis = text.size() > 2 && text[0] >= 'x' && text[0] <= 'z' && text[1] == '=';
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    if (has_axis) value = std::stod(text.substr(2), &used);
-  } catch (const std::exception&) {
-  }
-  if (!has_axis || used != text.size() - 2) {
-    throw InvalidArgument("--slice", "expected x=VALUE, y=VALUE or z=VALUE, found '" + text + "'");
-  }
-  return {text[0] - 'x', value};
-}
+using Levels = std::vector<const ScalarGrid*>;  // finest first
 
 // The grid and its coarser levels, finest first.
 std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
@@ -47,9 +33,10 @@ std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
 bool isKnown(const ScalarGrid& grid, float value) { return !std::isnan(value) && value != grid.background(); }
 
 // Box around all voxels that hold a value.
-Box boxOf(const std::vector<ScalarGrid>& levels) {
+Box boxOf(const Levels& levels) {
   Box box;
-  for (const ScalarGrid& grid : levels) {
+  for (const ScalarGrid* level : levels) {
+    const ScalarGrid& grid = *level;
     for (std::size_t i = 0; i < grid.leafCount(); ++i) {
       const ScalarGrid::Leaf leaf = grid.leaf(i);
       for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
@@ -70,10 +57,10 @@ struct Cell {
   float value = std::numeric_limits<float>::quiet_NaN();
 };
 
-Cell finestKnown(const std::vector<ScalarGrid>& levels, const Eigen::Vector3d& point) {
+Cell finestKnown(const Levels& levels, const Eigen::Vector3d& point) {
   Cell cell;
   for (; cell.level < levels.size(); ++cell.level) {
-    const ScalarGrid& grid = levels[cell.level];
+    const ScalarGrid& grid = *levels[cell.level];
     cell.voxel = (grid.frame().toIndex(point).array() + 0.5).floor().cast<int>();
     const float value = grid.at(cell.voxel);
     if (!isKnown(grid, value)) continue;
@@ -107,22 +94,44 @@ void drawCells(const Image<float>& numbers, Image<Rgb8>& picture) {
 
 }  // namespace
 
-Image<Rgb8> renderSlice(const SliceRequest& request) {
-  const SlicePlane plane = parsePlane(request.plane);
-  const std::vector<ScalarGrid> levels = readLevels(request);
-  const Box box = boxOf(levels);
-  if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
+SlicePlane parsePlane(const std::string& text) {
+  const bool has_axis = text.size() > 2 && text[0] >= 'x' && text[0] <= 'z' && text[1] == '=';
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    if (has_axis) value = std::stod(text.substr(2), &used);
+  } catch (const std::exception&) {
+  }
+  if (!has_axis || used != text.size() - 2) {
+    throw InvalidArgument("--slice", "expected x=VALUE, y=VALUE or z=VALUE, found '" + text + "'");
+  }
+  return {text[0] - 'x', value};
+}
+
+Image<Rgb8> renderSlice(const Levels& levels, const LevelSlice& slice) {
+  const Box box = slice.box.isEmpty() ? boxOf(levels) : slice.box;
   const auto field = [&](const Eigen::Vector3d& point) { return finestKnown(levels, point).value; };
-  const std::string& name = levels.front().name();
+  const std::string& name = levels.front()->name();
   SliceOptions options;
   if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
-  options.low = request.low, options.high = request.high;
-  Image<Rgb8> picture = drawSlice(sampleSlice(field, box, plane, request.longest), options);
-  if (request.cells) {
+  options.low = slice.low, options.high = slice.high;
+  Image<Rgb8> picture = drawSlice(sampleSlice(field, box, slice.plane, slice.longest), options);
+  if (slice.lines == CellLines::Draw) {
     const auto number = [&](const Eigen::Vector3d& point) { return numberOf(finestKnown(levels, point)); };
-    drawCells(sampleSlice(number, box, plane, request.longest), picture);
+    drawCells(sampleSlice(number, box, slice.plane, slice.longest), picture);
   }
   return picture;
+}
+
+Image<Rgb8> renderSlice(const SliceRequest& request) {
+  const SlicePlane plane = parsePlane(request.plane);
+  const std::vector<ScalarGrid> grids = readLevels(request);
+  Levels levels;
+  for (const ScalarGrid& grid : grids) levels.push_back(&grid);
+  const Box box = boxOf(levels);
+  if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
+  const CellLines lines = request.cells ? CellLines::Draw : CellLines::None;
+  return renderSlice(levels, {plane, box, request.longest, lines, request.low, request.high});
 }
 
 }  // namespace vdbfuse::tool
