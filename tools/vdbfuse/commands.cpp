@@ -66,7 +66,7 @@ void declareCommandLine(CLI::App& app, Action& action) {
       ->type_name("FILE")
       ->option_text("none");
   app.add_option("--simd", action.simd, "Vector instructions; others give other last digits")
-      ->transform(oneOf(simdTargets()))
+      ->transform(oneOf(builtSimdTargets()))
       ->type_name("WORD")
       ->option_text("the best that this processor has");
   app.require_subcommand(1);

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -40,14 +39,6 @@ Json toJson(const Arguments& arguments, const Evaluation& e) {
   return object;
 }
 
-void writeJson(AtomicFile& target, const Json& object) {
-  std::ofstream file(target.temporaryPath());
-  file << object.dump(2) << '\n';
-  file.close();
-  if (!file) throw IoError(target.temporaryPath(), "cannot be written");
-  target.commit();
-}
-
 void print(const Evaluation& e) {
   std::printf("accuracy      %.6g (90 %% of the surface), %.6g (rms)\n", e.accuracy90, e.accuracy_rms);
   std::printf("completeness  %.2f %%\n", 100 * e.completeness);
@@ -78,8 +69,7 @@ void print(const Evaluation& e) {
 void run(const Arguments& arguments) {
   const ThreadLimit limit(arguments.threads);
   // Before the work, so that a place that cannot be written to is known at once.
-  std::optional<AtomicFile> json;
-  if (isFile(arguments.json)) json.emplace(arguments.json);
+  if (isFile(arguments.json)) const AtomicFile can_be_written(arguments.json);
   const std::vector<Region> regions =
       arguments.regions.empty() ? std::vector<Region>{} : readRegions(arguments.regions);
   const TriangleMesh truth = readMesh(arguments.truth), mesh = readMesh(arguments.mesh);
@@ -87,11 +77,7 @@ void run(const Arguments& arguments) {
   const Evaluation evaluation = evaluate(mesh, truth, arguments.options, regions);
   stopIfInterrupted();
   if (speaks(arguments)) print(evaluation);
-  if (json) {
-    writeJson(*json, toJson(arguments, evaluation));
-  } else {
-    JsonReport(arguments, toJson(arguments, evaluation)).commit();
-  }
+  JsonReport(arguments, toJson(arguments, evaluation)).commit();
 }
 
 }  // namespace

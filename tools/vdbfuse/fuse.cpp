@@ -179,7 +179,7 @@ void addFuse(CLI::App& app, Action& action) {
       "vdbfuse fuse --config run.toml --output again.ply");
   auto request = std::make_shared<FuseRequest>();
   addFuseOptions(sub, *request);
-  sub.callback([&action, request] {
+  sub.callback([&sub, &action, request] {
     refuse("options", validate(request->photographs.stereo));
     action = [&sub, &action, request] { fuse(*request, sub, action); };
   });

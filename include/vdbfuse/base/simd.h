@@ -8,9 +8,12 @@
 
 namespace vdbfuse {
 
-/// The sets of vector instructions that this processor has and vdbfuse is built for, best first: "AVX2",
-/// "SSE4", "SSE2", …
+/// The sets of vector instructions that this processor has, vdbfuse is built for, and useSimdTarget() has not
+/// ruled out, best first: "AVX2", "SSE4", …
 std::vector<std::string> simdTargets();
+
+/// All that vdbfuse is built for, whatever this processor has.
+std::vector<std::string> builtSimdTargets();
 
 /// Uses this set from now on and none that is better. Not while other threads compute. Throws InvalidArgument
 /// for a name that simdTargets() does not give.

@@ -100,6 +100,8 @@ CommandInfo describe(const CLI::App& command) {
   // What all subcommands have belongs to the end, and help there, once; the version to the tool itself.
   std::vector<ArgumentInfo>& options = info.options;
   const std::string common = (parent != nullptr ? *parent : command).get_help_ptr()->get_group();
+  for (ArgumentInfo& option : options)
+    if (isHelp(option)) option.group = common;
   std::stable_partition(options.begin(), options.end(),
                         [&](const ArgumentInfo& o) { return o.group != common; });
   const auto help =
