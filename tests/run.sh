@@ -4,7 +4,8 @@
 # and those of the cheap modules once more under the address and undefined-behaviour sanitizers, and feeds damaged files
 # to the readers.
 #
-#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file
+#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, the
+#                           report of vdbfuse compare in a browser
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
 #   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
 set -euo pipefail
