@@ -5,8 +5,9 @@
 # to the readers.
 #
 #   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, HTML
-#                           of the pages, replay, completion, manual pages, interrupts, full disks, the Debian packages in a
-#                           clean system, the first steps of README.md in a clean clone
+#                           of the pages, the report of vdbfuse compare in a browser, replay, completion, manual pages,
+#                           interrupts, full disks, the Debian packages in a clean system, the first steps of README.md in a
+#                           clean clone
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
 #   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
 set -euo pipefail
@@ -104,6 +105,7 @@ else
   cmake --build build-static -j "$jobs"
   run_tests "static, without PCL" build-static -LE style
   run_script "Pages and headers as HTML, without a warning" cmake --build build --target vdbfuse_docs
+  run_script "The report of compare in a browser" tests/tool/compare_browser_test.py build/bin/vdbfuse build/compare_browser
   run_script "Saved configurations give the same again" tests/tool/replay_test.sh build/bin/vdbfuse
   run_script "Completion in bash and zsh" tests/tool/completion_test.sh build/bin/vdbfuse
   run_script "Manual pages" tests/tool/manual_test.sh build/bin/vdbfuse

@@ -8,6 +8,7 @@
 
 #include "evaluation_json.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/version.h"
 #include "vdbfuse/io/glb.h"
 #include "vdbfuse/report/html.h"
 #include "vdbfuse/report/page.h"
