@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <string>
 
-#include "compare_methods.h"
-#include "compare_pictures.h"
+#include "compare/methods.h"
+#include "compare/pictures.h"
 #include "vdbfuse/report/page.h"
 
 namespace vdbfuse::tool {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_page.h"
+#include "compare/page.h"
 
 #include <algorithm>
 #include <cstdio>
