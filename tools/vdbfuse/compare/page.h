@@ -11,6 +11,13 @@
 
 namespace vdbfuse::tool {
 
+/// Names of the viewer's values in the embedded meshes.
+inline constexpr const char* kSupportAttribute = "_SUPPORT";
+inline constexpr const char* kDistanceAttribute = "_DISTANCE";
+
+/// "y = 0.25"
+std::string planeText(const SlicePlane& plane);
+
 /// A mesh in the page: simplified, with what the viewer colours it by.
 struct EmbeddedMesh {
   ViewerMesh viewer;
