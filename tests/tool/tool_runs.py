@@ -15,22 +15,22 @@ class Run:
 
 def make_inputs(tool, folder, quick):
     """Scans, photographs, a mesh and grids in `folder`."""
-    size, views = ("320x240", "12") if quick else ("640x480", "36")
+    size, views = ("320x240", "12") if quick else ("480x360", "24")
 
     def call(*arguments):
         subprocess.run([tool, *arguments, "--quiet"], cwd=folder, check=True)
 
     call("synth", "figure", "scan", "--arc", "ring", "--views", views, "--size", size, "--outliers", "0.05",
          "--textured")
-    call("synth", "figure", "photographs", "--arc", "ring", "--views", "8" if quick else "16", "--size", size,
+    call("synth", "figure", "photographs", "--arc", "ring", "--views", "8" if quick else "12", "--size", size,
          "--textured", "--images-only")
-    call("fuse", "scan", "mesh.ply", "--resolution", "128" if quick else "384", "--save-grids", "grids.vdb")
+    call("fuse", "scan", "mesh.ply", "--resolution", "128" if quick else "256", "--save-grids", "grids.vdb")
 
 
 def runs(inputs, quick):
     scan, photographs = str(inputs / "scan"), str(inputs / "photographs")
     mesh, grids = str(inputs / "mesh.ply"), str(inputs / "grids.vdb")
-    resolution, views = ("96", "16") if quick else ("320", "150")
+    resolution, views = ("96", "16") if quick else ("224", "60")
     return [
         Run("fuse", ["fuse", scan, "out.ply", "--resolution", resolution, "--save-grids", "out.vdb", "--json",
                      "out.json", "--save-config", "out.toml"], ["out.ply", "out.vdb", "out.json", "out.toml"]),
@@ -45,7 +45,7 @@ def runs(inputs, quick):
         Run("synth", ["synth", "figure", "out", "--views", views], ["out"]),
         Run("evaluate", ["evaluate", mesh, scan + "/truth.ply", "--deep", "0.01", "--json", "out.json"],
             ["out.json"]),
-        Run("render", ["render", mesh, "out.png", "--turntable", "16" if quick else "64"], ["out.png"]),
+        Run("render", ["render", mesh, "out.png", "--turntable", "16" if quick else "32"], ["out.png"]),
         Run("render slice", ["render", grids, "out.png", "--slice", "z=0", "--cells", "--size", "2000x2000"],
             ["out.png"]),
         Run("info", ["info", scan, "--json", "out.json"], ["out.json"]),
