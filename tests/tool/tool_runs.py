@@ -45,6 +45,8 @@ def runs(inputs, quick):
         Run("synth", ["synth", "figure", "out", "--views", views], ["out"]),
         Run("evaluate", ["evaluate", mesh, scan + "/truth.ply", "--deep", "0.01", "--json", "out.json"],
             ["out.json"]),
+        Run("compare", ["compare", scan, "out", "--reference", scan + "/truth.ply", "--resolution", resolution, "--json",
+                        "out.json"], ["out", "out.json"]),
         Run("render", ["render", mesh, "out.png", "--turntable", "16" if quick else "32"], ["out.png"]),
         Run("render slice", ["render", grids, "out.png", "--slice", "z=0", "--cells", "--size", "2000x2000"],
             ["out.png"]),
