@@ -37,6 +37,15 @@ class Process:
             elif line.strip():
                 self.words.append(line.strip())
 
+    def is_up(self):
+        """Whether the program has begun: until then a signal ends it as any other, and there is nothing to leave."""
+        try:
+            status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
+        except OSError:
+            return True  # gone already
+        caught = next((int(line.split()[1], 16) for line in status.splitlines() if line.startswith("SigCgt")), ~0)
+        return bool(caught >> (signal.SIGINT - 1) & 1)
+
     def wait(self):
         code = self.process.wait()
         self.reader.join()
@@ -78,6 +87,7 @@ class Test:
         process, work, scratch, before = self.start(run)
         wait_for(lambda: condition(process), process)
         time.sleep(delay)
+        wait_for(process.is_up, process)
         if process.process.poll() is not None:
             process.wait()
             return  # it was faster this time
