@@ -2,14 +2,12 @@
 #include "render_slice.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/report/grid_levels.h"
 #include "vdbfuse/report/slice.h"
-#include "vdbfuse/volume/leaf_index.h"
 #include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
@@ -44,47 +42,8 @@ std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
   return levels;
 }
 
-bool isKnown(const ScalarGrid& grid, float value) { return !std::isnan(value) && value != grid.background(); }
-
-// Box around all voxels that hold a value.
-Box boxOf(const std::vector<ScalarGrid>& levels) {
-  Box box;
-  for (const ScalarGrid& grid : levels) {
-    for (std::size_t i = 0; i < grid.leafCount(); ++i) {
-      const ScalarGrid::Leaf leaf = grid.leaf(i);
-      for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
-        if (!isKnown(grid, leaf.values[static_cast<std::size_t>(k)])) continue;
-        const Eigen::Vector3d voxel = (leaf.origin + leafOffset(k)).cast<double>();
-        box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() - 0.5)));
-        box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() + 0.5)));
-      }
-    }
-  }
-  return box;
-}
-
-// What a point of the slice lies in.
-struct Cell {
-  std::size_t level = 0;
-  Index3 voxel = Index3::Zero();
-  float value = std::numeric_limits<float>::quiet_NaN();
-};
-
-Cell finestKnown(const std::vector<ScalarGrid>& levels, const Eigen::Vector3d& point) {
-  Cell cell;
-  for (; cell.level < levels.size(); ++cell.level) {
-    const ScalarGrid& grid = levels[cell.level];
-    cell.voxel = (grid.frame().toIndex(point).array() + 0.5).floor().cast<int>();
-    const float value = grid.at(cell.voxel);
-    if (!isKnown(grid, value)) continue;
-    cell.value = value;
-    break;
-  }
-  return cell;
-}
-
 // A number for each cell, so that neighbours have different ones, exact in a float.
-double numberOf(const Cell& cell) {
+double numberOf(const GridLevels::Cell& cell) {
   std::uint64_t number = cell.level;
   for (int a = 0; a < 3; ++a)
     number = number * 0x9e3779b97f4a7c15ULL + static_cast<std::uint32_t>(cell.voxel[a]);
@@ -109,17 +68,18 @@ void drawCells(const Image<float>& numbers, Image<Rgb8>& picture) {
 
 Image<Rgb8> renderSlice(const SliceRequest& request) {
   const SlicePlane plane = parsePlane(request.plane);
-  const std::vector<ScalarGrid> levels = readLevels(request);
-  const Box box = boxOf(levels);
+  const std::vector<ScalarGrid> grids = readLevels(request);
+  const std::string& name = grids.front().name();
+  const GridLevels levels(grids, name);
+  const Box box = levels.box();
   if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
-  const auto field = [&](const Eigen::Vector3d& point) { return finestKnown(levels, point).value; };
-  const std::string& name = levels.front().name();
+  const auto field = [&](const Eigen::Vector3d& point) { return levels.at(point).value; };
   SliceOptions options;
   if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
   options.low = request.low, options.high = request.high;
   Image<Rgb8> picture = drawSlice(sampleSlice(field, box, plane, request.longest), options);
   if (request.cells) {
-    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(finestKnown(levels, point)); };
+    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(levels.at(point)); };
     drawCells(sampleSlice(number, box, plane, request.longest), picture);
   }
   return picture;
