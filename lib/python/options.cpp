@@ -68,12 +68,10 @@ std::string OptionValue::path() const {
 }
 
 std::vector<double> OptionValue::numbers(std::size_t count) const {
-  std::vector<double> numbers;
-  try {
-    for (const py::handle item : value_) numbers.push_back(OptionValue(name_, item).number());
-  } catch (const py::error_already_set&) {
+  if (py::isinstance<py::str>(value_) || !py::isinstance<py::iterable>(value_))
     refuseType("a list of numbers");
-  }
+  std::vector<double> numbers;
+  for (const py::handle item : value_) numbers.push_back(OptionValue(name_, item).number());
   if (numbers.size() != count) refuse(std::to_string(count) + " numbers");
   return numbers;
 }

@@ -112,7 +112,7 @@ def test_nan_in_cameras_and_poses(scan):
 def test_nan_and_infinity_in_depths_are_no_measurements(scan):
     depths, poses = sphere(14)
     holes = np.where(depths > 0, depths, np.nan)
-    holes[3, :5] = np.inf
+    holes[3, 0] = np.inf
     expected = vdbfuse.fuse(depths, INTRINSICS, poses, voxel=0.1)
     assert np.array_equal(vdbfuse.fuse(holes, INTRINSICS, poses, voxel=0.1).vertices, expected.vertices)
 

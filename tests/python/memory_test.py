@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nothing leaks, nothing is copied that need not be, and views that stream by do not pile up."""
+import gc
+import os
+import subprocess
+import sys
+import weakref
+
+import numpy as np
+import vdbfuse
+from scenes import INTRINSICS, sphere
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PAGE = os.sysconf("SC_PAGE_SIZE")
+
+
+def resident():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * PAGE
+
+
+def everything_once(depths, poses):
+    """One use of everything, failures too."""
+    colors = np.zeros((*depths.shape, 3), np.uint8)
+    mesh = vdbfuse.fuse(lambda i: depths[i], INTRINSICS, poses, voxel=0.15, colors=colors, check=False, grids=True,
+                        progress=lambda step, share: None)
+    assert mesh.vertices.sum() != 0 and mesh.slice("surface", longest=32)[0].size > 0
+    vdbfuse.judge((d for d in depths), INTRINSICS, poses)[0].outlier.sum()
+    vdbfuse.evaluate(mesh, (mesh.vertices, mesh.triangles), samples=500)
+    volume = vdbfuse.TSDF(voxel=0.15)
+    volume.integrate(depths[0], INTRINSICS, poses[0])
+    volume.changed_blocks()
+    scanner = vdbfuse.Scanner(voxel=0.15, when_full="wait")
+    scanner.push(depths[0], INTRINSICS, poses[0])
+    scanner.wait()
+    try:
+        vdbfuse.fuse(lambda i: depths[i] if i < 3 else 1 / 0, INTRINSICS, poses)
+    except ZeroDivisionError:
+        pass
+
+
+def test_nothing_leaks_in_200_runs():
+    depths, poses = sphere(6)
+    for _ in range(40):  # allocators and thread pools fill up
+        everything_once(depths, poses)
+    gc.collect()
+    objects, begin = len(gc.get_objects()), resident()
+    for _ in range(200):
+        everything_once(depths, poses)
+    gc.collect()
+    growth = resident() - begin
+    print(f"{growth / 2**20:.1f} MiB more after 200 runs, {len(gc.get_objects()) - objects} objects")
+    assert len(gc.get_objects()) - objects < 200  # less than one a run
+    assert growth < 200 * depths.nbytes / 8  # a leak of one view in eight runs would be more
+
+
+def test_sources_are_let_go_of():
+    class Frames:
+        def __init__(self, depths):
+            self.depths = depths
+
+        def __call__(self, index):
+            return self.depths[index]
+    depths, poses = sphere(6)
+    frames = Frames(depths)
+    watched = weakref.ref(frames)
+    data = vdbfuse.data_set(frames, INTRINSICS, poses)
+    mesh = vdbfuse.fuse(data, voxel=0.15, check=False)
+    del frames, data
+    gc.collect()
+    assert watched() is None and len(mesh.triangles) > 0
+
+
+def peak_of(program, *arguments):
+    """MiB of a process of its own, at most, and what its program printed."""
+    text = subprocess.run([sys.executable, "-B", "-c", PREAMBLE + program, *map(str, arguments)], check=True,
+                          capture_output=True, text=True).stdout
+    return float(text.split()[-1])
+
+
+PREAMBLE = f"""
+import resource, sys
+sys.path.insert(0, {HERE!r})
+import numpy as np
+import vdbfuse, scenes
+count = int(sys.argv[1])
+camera = (225.0, 225.0, 119.5, 89.5)
+poses = scenes.poses_around(count)
+random = np.random.default_rng(1)
+def frames():
+    for pose in poses:
+        depth = scenes.sphere_depth(pose, camera, 240, 180)
+        yield np.where(depth > 0, depth + 0.002 * random.standard_normal(depth.shape), 0).astype(np.float32)
+def say():
+    print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
+
+TSDF = """
+volume = vdbfuse.TSDF(voxel=0.02)
+for depth, pose in zip(frames(), poses):
+    volume.integrate(depth, camera, pose)
+assert len(volume.mesh().triangles) > 1000
+say()
+"""
+
+FUSE = """
+mesh = vdbfuse.fuse(frames(), camera, poses, voxel=0.02, memory="500MiB", check=False, color="none")
+assert mesh.topology()["closed"]
+say()
+"""
+
+
+def test_a_thousand_frames_integrated_from_a_generator_take_no_more_than_250():
+    few, many = peak_of(TSDF, 250), peak_of(TSDF, 1000)
+    print(f"TSDF: {few:.0f} MiB with 250 frames, {many:.0f} MiB with 1000")
+    assert many < 1.1 * few
+
+
+def test_a_thousand_frames_fused_from_a_generator_stay_within_the_memory_given():
+    few, many = peak_of(FUSE, 250), peak_of(FUSE, 1000)
+    print(f"fuse: {few:.0f} MiB with 250 frames, {many:.0f} MiB with 1000; views alone: {1000 * 240 * 180 * 16 / 2**20:.0f} MiB")
+    assert many < 1.15 * few
+    assert many < 700
