@@ -20,7 +20,8 @@ set(VDBFUSE_LAYERS
     4:fusion      # reliability, rho, sigma, TSDF
     4:surface     # field, mesh extraction
     4:report      # pictures, slices
-    5:pipeline    # the whole line in one function
+    5:pipeline    # the whole line in one function; the live Scanner
+    6:capi        # the library for C
     6:python)     # the Python package, a library of its own
 
 # Sets OUT to the floor of MODULE; stops if the module is not in the table.

@@ -4,7 +4,8 @@ include(Layers)
 # Flags of everything we compile; nothing of it reaches a project that adds us as a subdirectory.
 add_library(vdbfuse_flags INTERFACE)
 target_compile_features(vdbfuse_flags INTERFACE cxx_std_20)
-target_compile_options(vdbfuse_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic -Wnon-virtual-dtor
+target_compile_options(vdbfuse_flags INTERFACE -Wall -Wextra -Wshadow -Wpedantic
+                                               $<$<COMPILE_LANGUAGE:CXX>:-Wnon-virtual-dtor>
                                                $<$<BOOL:${VDBFUSE_WERROR}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # g++ 12 warns of std::string's own code at -O3 (its bug 105329).

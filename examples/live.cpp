@@ -32,7 +32,7 @@ using Seconds = std::chrono::duration<double>;
 
 struct Request {
   std::string folder, out;
-  double rate = 30, voxel = 0.03, far = std::numeric_limits<double>::infinity(), key_distance = 0.0;
+  double rate = 30, voxel = 0.05, far = std::numeric_limits<double>::infinity(), key_distance = 0.0;
   std::size_t frames = 40;
   int width = 160, height = 120;
 };
@@ -74,9 +74,10 @@ std::vector<View> loadFrames(const Request& request) {
   ViewSequence sequence;
   if (request.folder.empty()) {
     SynthOptions camera;
-    camera.views = static_cast<int>(std::min<std::size_t>(request.frames, 100));
+    camera.views = static_cast<int>(std::min<std::size_t>(request.frames, 300));
     camera.width = request.width, camera.height = request.height;
-    camera.arc = Arc::Room;
+    camera.arc = Arc::Ring;  // around a figure in the middle of a room, whose walls are seen behind it
+    camera.focal_px = 0.8 * request.width;
     camera.confidence = ConfidenceKind::None;
     camera.quantum = 0.001;
     sequence = SyntheticScan(inRoom(makeScene("figure")), camera).views();
@@ -123,7 +124,7 @@ struct Viewer {
   std::vector<double> seconds;  // that a preview took
   std::size_t blocks = 0, triangles = 0;
 
-  // Looks again and again, at most 30 times a second.
+  // Looks again and again, ten times a second at most: the rest of the time is the sensor's.
   void run(Scanner& scanner, Ages& ages, const std::atomic<bool>& done) {
     while (!done) {
       const Clock::time_point begin = Clock::now();
@@ -131,7 +132,7 @@ struct Viewer {
       ages.shown(preview.newest);
       if (!preview.changed.empty()) seconds.push_back(Seconds(Clock::now() - begin).count());
       for (const SurfaceBlock& block : preview.changed) ++blocks, triangles += block.mesh.triangles.size();
-      std::this_thread::sleep_until(begin + std::chrono::milliseconds(33));
+      std::this_thread::sleep_until(begin + std::chrono::milliseconds(100));
     }
   }
 };
@@ -175,7 +176,7 @@ Session play(Scanner& scanner, const std::vector<View>& frames, const Request& r
 
 void printSession(const Session& session, const ScannerStatus& status, const Request& request) {
   std::printf("%zu frames in %.2f s: %.1f of %g Hz, push at most %.0f ms late\n", status.pushed,
-              session.seconds, static_cast<double>(status.pushed) / session.seconds, request.rate,
+              session.seconds, static_cast<double>(status.pushed - 1) / session.seconds, request.rate,
               1e3 * session.late);
   std::printf("dropped %zu, in the queue %.0f (median), %.0f (most)\n", status.dropped,
               quantile(session.waiting, 0.5), quantile(session.waiting, 1));
@@ -229,7 +230,7 @@ bool run(const Request& request) {
   std::thread looks([&] { viewer.run(scanner, ages, done); });
   const Session session = play(scanner, frames, request, ages);
   scanner.wait();
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // the viewer's last look
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the viewer's last look
   done = true;
   looks.join();
   printSession(session, scanner.status(), request);

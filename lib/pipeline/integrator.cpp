@@ -11,7 +11,7 @@ namespace vdbfuse {
 namespace {
 
 // What is copied or looked up while integrate() waits.
-constexpr std::size_t kLeavesAtATime = 256, kVerticesAtATime = 1 << 15;
+constexpr std::size_t kLeavesAtATime = 1024, kVerticesAtATime = 1 << 15;
 
 TsdfVolume makeVolume(const IntegratorOptions& options) {
   const std::vector<std::string> problems = validate(options);
@@ -79,9 +79,24 @@ struct Integrator::Impl {
     }
   }
 
-  void describeVertices(TriangleMesh& mesh) const {
+  void makeRoomForAttributes(TriangleMesh& mesh) const {
     mesh.support.resize(mesh.vertices.size());
     if (volume.options().colors == TsdfColors::Keep) mesh.colors.resize(mesh.vertices.size());
+  }
+
+  void describeVertices(std::vector<SurfaceBlock>& blocks) const {
+    for (SurfaceBlock& block : blocks) makeRoomForAttributes(block.mesh);
+    for (std::size_t i = 0; i < blocks.size();) {
+      const std::lock_guard lock(volume_mutex);
+      for (std::size_t vertices = 0; i < blocks.size() && vertices < kVerticesAtATime; ++i) {
+        volume.describeVertices(blocks[i].mesh, 0, blocks[i].mesh.vertices.size());
+        vertices += blocks[i].mesh.vertices.size();
+      }
+    }
+  }
+
+  void describeVertices(TriangleMesh& mesh) const {
+    makeRoomForAttributes(mesh);
     for (std::size_t begin = 0; begin < mesh.vertices.size(); begin += kVerticesAtATime) {
       const std::lock_guard lock(volume_mutex);
       volume.describeVertices(mesh, begin, std::min(mesh.vertices.size(), begin + kVerticesAtATime));
@@ -119,7 +134,7 @@ std::vector<SurfaceBlock> Integrator::changedBlocks() {
   const std::lock_guard lock(impl_->surface_mutex);
   impl_->copyChanges();
   std::vector<SurfaceBlock> blocks = impl_->surface.changedBlocks();
-  for (SurfaceBlock& block : blocks) impl_->describeVertices(block.mesh);
+  impl_->describeVertices(blocks);
   return blocks;
 }
 

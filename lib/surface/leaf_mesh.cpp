@@ -74,16 +74,19 @@ unsigned signChanges(const SignPatch& signs, int axis, int x, int y) {
          0xff;
 }
 
-// The cubes of a row that are known and that the surface crosses; those that are not known.
+// The cubes of a row that are known and that the surface crosses; those with an unknown corner that have both
+// signs at the others.
 struct RowCubes {
-  unsigned crossed, unknown;
+  unsigned crossed, left_out;
 };
 RowCubes rowCubes(const SignPatch& signs, int x, int y) {
-  unsigned all = ~0u, any = 0, is = ~0u;
-  for (const std::size_t r : {rowOf(x, y), rowOf(x + 1, y), rowOf(x, y + 1), rowOf(x + 1, y + 1)})
-    all &= signs.inside[r], any |= signs.inside[r], is &= signs.known[r];
-  const unsigned known_cubes = is & (is >> 1);
-  return {(any | any >> 1) & ~(all & all >> 1) & known_cubes & 0xff, ~known_cubes & 0xff};
+  unsigned in = 0, out = 0, is = ~0u;
+  for (const std::size_t r : {rowOf(x, y), rowOf(x + 1, y), rowOf(x, y + 1), rowOf(x + 1, y + 1)}) {
+    in |= signs.inside[r], is &= signs.known[r];
+    out |= signs.known[r] & ~static_cast<unsigned>(signs.inside[r]);
+  }
+  const unsigned known_cubes = is & (is >> 1), both = (in | in >> 1) & (out | out >> 1) & 0xff;
+  return {both & known_cubes, both & ~known_cubes};
 }
 
 std::uint8_t cubeCase(const SignPatch& signs, const Index3& cube) {
@@ -105,7 +108,7 @@ class Connector {
     for (int row = 0; row < 64; ++row) {
       const int x = row >> 3, y = row & 7;
       const RowCubes cubes = rowCubes(mesh_.signs, x, y);
-      for (unsigned left = cubes.unknown; left != 0; left &= left - 1)
+      for (unsigned left = cubes.left_out; left != 0; left &= left - 1)
         appendRim({x, y, std::countr_zero(left)});
       for (unsigned crossed = cubes.crossed; crossed != 0; crossed &= crossed - 1) {
         const Index3 cube(x, y, std::countr_zero(crossed));

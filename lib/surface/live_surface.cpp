@@ -111,13 +111,19 @@ struct LiveSurface::Impl {
   }
 
   TriangleMesh meshOf(const Index3& block) const {
+    const Index3 first = block - Index3::Constant(ScalarGrid::kLeafSide);
     BlockNeighbourhood around{};
-    for (int x = 0; x < kAroundBlock; ++x)
-      for (int y = 0; y < kAroundBlock; ++y)
-        for (int z = 0; z < kAroundBlock; ++z) {
-          const std::uint32_t leaf = find(block + ScalarGrid::kLeafSide * Index3(x - 1, y - 1, z - 1));
-          if (leaf != kNoLeaf) around[placeAround(x, y, z)] = &leaves[leaf].mesh;
+    for (int x = 0; x < kAroundBlock; ++x) {
+      for (int y = 0; y < kAroundBlock; ++y) {
+        const Index3 column = first + ScalarGrid::kLeafSide * Index3(x, y, 0);
+        const Index3 end = column + ScalarGrid::kLeafSide * Index3(0, 0, kAroundBlock);
+        for (auto leaf = numbers.lower_bound(column); leaf != numbers.end() && originBefore(leaf->first, end);
+             ++leaf) {
+          const int z = (leaf->first.z() - first.z()) / ScalarGrid::kLeafSide;
+          around[placeAround(x, y, z)] = &leaves[leaf->second].mesh;
         }
+      }
+    }
     return blockMesh(around);
   }
 

@@ -10,7 +10,7 @@ include(${DEPENDS})
 set(violations "")
 
 function(check_public_header PLACE MODULE INCLUDED)
-  if(INCLUDED MATCHES "^Eigen/" OR NOT INCLUDED MATCHES "[/.]" OR (MODULE STREQUAL "pcl" AND INCLUDED MATCHES "^pcl/"))
+  if(INCLUDED MATCHES "^(Eigen/|std(def|int)\\.h$)" OR NOT INCLUDED MATCHES "[/.]" OR (MODULE STREQUAL "pcl" AND INCLUDED MATCHES "^pcl/"))
     return()
   endif()
   string(APPEND violations "${PLACE}: a public header includes <${INCLUDED}>, which must stay inside lib/\n")

@@ -34,7 +34,7 @@ std::vector<std::string> validate(const IntegratorOptions& options);
 
 /// One thread integrates, another may ask for the mesh meanwhile: it is made of what has been integrated when
 /// it is asked for, perhaps with parts of the views that come while it is made, and holds integrate() up for
-/// a few hundred leaves at a time only. Triangles are made anew only where something changed since the last
+/// a thousand leaves at a time only. Triangles are made anew only where something changed since the last
 /// mesh; putting all of them together, normals and colours are a pass over the whole.
 class Integrator {
  public:

@@ -91,8 +91,8 @@ struct FinishOptions {
 /// All methods may be called from any thread at any time; only the destructor must be the last call.
 /// A thread of the scanner's own integrates views in the order of push() and works corrections in between
 /// them; the loops inside both, of previews and of finish(), share the processors. What went wrong on that
-/// thread (a full disk, no memory) is thrown once by the next call of any method but status(); the view it
-/// happened with is lost, the others are not.
+/// thread (a full disk, no memory) is thrown once by the next call of any method but status() and views();
+/// the view it happened with is lost, the others are not.
 class Scanner {
  public:
   /// Throws InvalidArgument.
