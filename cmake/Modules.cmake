@@ -27,8 +27,12 @@ endif()
 # The core library: every module adds its sources to it.
 add_library(vdbfuse)
 add_library(vdbfuse::vdbfuse ALIAS vdbfuse)
-set_target_properties(vdbfuse PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+set_target_properties(vdbfuse PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${VDBFUSE_SOVERSION}
                                          POSITION_INDEPENDENT_CODE ON)
+if(NOT BUILD_SHARED_LIBS)
+  # What CMake defines for shared libraries: the same commands, so that a compiler cache serves both kinds.
+  target_compile_definitions(vdbfuse PRIVATE vdbfuse_EXPORTS)
+endif()
 target_compile_features(vdbfuse PUBLIC cxx_std_20)
 target_include_directories(
   vdbfuse
@@ -61,7 +65,7 @@ function(vdbfuse_library_module NAME)
   add_library(vdbfuse_${NAME} SHARED ${arg_SOURCES})
   add_library(vdbfuse::${NAME} ALIAS vdbfuse_${NAME})
   set_target_properties(
-    vdbfuse_${NAME} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} EXPORT_NAME ${NAME}
+    vdbfuse_${NAME} PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${VDBFUSE_SOVERSION} EXPORT_NAME ${NAME}
                                LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
   target_include_directories(vdbfuse_${NAME} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
   target_link_libraries(vdbfuse_${NAME} PUBLIC vdbfuse::vdbfuse ${arg_PUBLIC_LINK}

@@ -4,7 +4,8 @@
 # and those of the cheap modules once more under the address and undefined-behaviour sanitizers, and feeds damaged files
 # to the readers.
 #
-#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file
+#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, the
+#                           Debian packages in a clean system, the first steps of README.md in a clean clone
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
 #   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
 set -euo pipefail
@@ -50,6 +51,19 @@ build() {
     -DVDBFUSE_BUILD_EXAMPLES=ON -DVDBFUSE_WITH_PCL="$with_pcl" "$@" >"$folder.log" 2>&1 ||
     { cat "$folder.log"; exit 1; }
   rm "$folder.log"
+}
+
+# run_script NAME COMMAND...: one result; exit code 77: skipped.
+run_script() {
+  local name=$1 code=0
+  shift
+  step "$name"
+  "$@" || code=$?
+  case $code in
+    0) results+=("$name: passed"); total_passed=$((${total_passed:-0} + 1)) ;;
+    77) results+=("$name: skipped") ;;
+    *) results+=("$name: FAILED"); failed=$((failed + 1)) ;;
+  esac
 }
 
 step "Packages"
@@ -100,6 +114,8 @@ else
     results+=("names: FAILED")
     failed=$((failed + 1))
   fi
+  run_script "Debian packages in a clean system" tests/package/clean_system.sh
+  run_script "First steps of README.md" tests/package/newcomer.sh --with-cache
 fi
 
 step "Fuzzers of the readers, $fuzz_seconds s each"

@@ -5,7 +5,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <vector>
 
 #include "buffer.h"
@@ -38,6 +37,22 @@ constexpr std::uint32_t lowestNode(std::uint32_t tile, std::uint64_t slots) {
 /// it is marked as source, so that it is neither free nor a sink.
 Buffer<Tile> emptyTiles(std::uint32_t count);
 
+/// The arcs from `first` up to `last`, to loop over. clang++ 14 does not compile std::views::iota.
+struct ArcRange {
+  struct Iterator {
+    std::uint32_t arc;
+    std::uint32_t operator*() const { return arc; }
+    Iterator& operator++() {
+      ++arc;
+      return *this;
+    }
+    bool operator==(const Iterator&) const = default;
+  };
+  std::uint32_t first, last;
+  Iterator begin() const { return {first}; }
+  Iterator end() const { return {last}; }
+};
+
 struct State {
   Buffer<Tile> tiles;              ///< see emptyTiles()
   Buffer<std::uint32_t> residual;  ///< of lattice arcs: 6 · 64 a tile, by direction, then by slot
@@ -68,9 +83,9 @@ struct State {
     return (leaves ? beyond : tileOf(node)) * lattice::kSlots + lattice::neighbourSlot(slot, direction);
   }
   /// The listed arcs of a joined node.
-  auto arcs(std::uint32_t node) const {
+  ArcRange arcs(std::uint32_t node) const {
     const std::uint32_t r = row(node);
-    return std::views::iota(row_starts[r], row_starts[r + 1]);
+    return {row_starts[r], row_starts[r + 1]};
   }
 };
 

@@ -87,7 +87,7 @@ void markUnknown(ScalarGrid::Impl& impl) {
 class GridArchive : public openvdb::io::Archive {
  public:
   // Throws std::system_error.
-  void write(const std::filesystem::path& path, const openvdb::GridPtrVec& grids) const {
+  void writeFile(const std::filesystem::path& path, const openvdb::GridPtrVec& grids) const {
     std::ofstream stream(path, std::ios::binary);
     openvdb::io::Archive::write(stream, grids, /*seekable=*/true);
     stream.close();
@@ -104,7 +104,7 @@ void writeGrids(const std::filesystem::path& path, const std::vector<const Scala
   std::filesystem::path temporary = path;
   temporary += ".part";
   try {
-    GridArchive().write(temporary, copies);
+    GridArchive().writeFile(temporary, copies);
     std::filesystem::rename(temporary, path);
   } catch (const std::exception& error) {
     std::error_code ignored;

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/version.h"
 #include "vdbfuse/io/atomic_file.h"
 #include "vdbfuse/io/mesh_file.h"
 

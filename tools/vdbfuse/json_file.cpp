@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/version.h"
 #include "vdbfuse/io/atomic_file.h"
 
 namespace vdbfuse::tool {

@@ -15,6 +15,7 @@
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/memory.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/version.h"
 #include "vdbfuse/pipeline/judgement_folder.h"
 
 namespace vdbfuse::tool {

@@ -8,6 +8,7 @@
 
 #include "commands.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/version.h"
 
 namespace {
 

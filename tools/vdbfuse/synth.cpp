@@ -12,6 +12,7 @@
 #include "output_folder.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/version.h"
 #include "vdbfuse/formats/mvsnet.h"
 #include "vdbfuse/geometry/look_at.h"
 #include "vdbfuse/io/mesh_file.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Curless-Levoy fusion is a member of the family (Hernández et al. 2007, section 4.1 and appendix): the
 // proof, run.
-//   example_curless_levoy [FOLDER OF DEPTH MAPS [PLOT.png]]
+//   example_09_curless_levoy [FOLDER OF DEPTH MAPS [PLOT.png]]
 // Prints three tables: the evidence of one measurement with logistic noise beside (D - d)/w; the evidence of
 // a scan beside the Curless-Levoy sum, and the surfaces that both have; the truncation that an outlier share
 // stands for. Draws the last.

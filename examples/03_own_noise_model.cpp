@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A noise model of your own is its cumulative distribution: here Student's with two degrees of freedom, whose
 // tails are heavier than those of the models that come with the library.
+//   example_03_own_noise_model
 #include <cmath>
 #include <cstdio>
 #include <exception>

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# examples/evidence.sh SCAN [OUTDIR] [SLICE] [options of fuse]: Fig. 5 of the paper, on any data set. Draws a slice of the
-# evidence without and with the outlier model, and how far each pixel of a view is believed, and counts the pieces that
-# visibility and Curless-Levoy fusion leave. OUTDIR: build/evidence; SLICE: y=0. Needs build/bin/vdbfuse: run
-# examples/quickstart.sh first.
+# examples/10_evidence.sh SCAN [OUTDIR] [SLICE] [options of fuse]: Fig. 5 of the paper, on any data set. Draws a slice of
+# the evidence without and with the outlier model, and how far each pixel of a view is believed, and counts the pieces
+# that visibility and Curless-Levoy fusion leave. OUTDIR: build/evidence; SLICE: y=0. Needs build/bin/vdbfuse: run
+# examples/quickstart.sh first. VDBFUSE=PROGRAM (environment): another one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-[ $# -ge 1 ] || { echo "usage: examples/evidence.sh SCAN [OUTDIR] [SLICE] [options of fuse]" >&2; exit 2; }
+[ $# -ge 1 ] || { echo "usage: examples/10_evidence.sh SCAN [OUTDIR] [SLICE] [options of fuse]" >&2; exit 2; }
 scan=$1 out=${2:-build/evidence} slice=${3:-y=0}
 shift $(($# < 3 ? $# : 3))
-tool=build/bin/vdbfuse
+tool=${VDBFUSE:-build/bin/vdbfuse}
 mkdir -p "$out"
 
 # run NAME [options]: a mesh, its grids, its report.

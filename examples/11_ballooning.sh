@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# examples/ballooning.sh [OUTDIR]: Fig. 4 of the paper. A figure with thin legs and a deep cavity in its chest, scanned on
-# a turntable, is fused with visibility evidence and with constant ballooning of seven strengths. No strength keeps the
-# legs and the cavity together. Prints a table and leaves a picture of each result in OUTDIR (default build/ballooning).
-# Needs build/bin/vdbfuse: run examples/quickstart.sh first.
+# examples/11_ballooning.sh [OUTDIR [RESOLUTION [VIEWS]]]: Fig. 4 of the paper. A figure with thin legs and a deep cavity
+# in its chest, scanned on a turntable, is fused with visibility evidence and with constant ballooning of seven
+# strengths. No strength keeps the legs and the cavity together. Prints a table and leaves a picture of each result in
+# OUTDIR (defaults: build/ballooning, 128, 72). Needs build/bin/vdbfuse: run examples/quickstart.sh first.
+# VDBFUSE=PROGRAM (environment): another one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-out=${1:-build/ballooning}
-tool=build/bin/vdbfuse
+out=${1:-build/ballooning} resolution=${2:-128} views=${3:-72}
+tool=${VDBFUSE:-build/bin/vdbfuse}
 mkdir -p "$out"
-"$tool" synth figure "$out/scan" --arc ring --views 72 --size 320x240 --outliers 0.1 --overwrite --quiet
+"$tool" synth figure "$out/scan" --arc ring --views "$views" --size 320x240 --outliers 0.1 --overwrite --quiet
 
 # measure NAME: IoU, open share of the cavity, kept shares of the legs, components.
 measure() {
@@ -24,7 +25,8 @@ measure() {
 run() {
   local name=$1
   shift
-  if "$tool" fuse "$out/scan" "$out/$name.ply" --resolution 128 --overwrite --quiet "$@" 2>"$out/$name.log"; then
+  if "$tool" fuse "$out/scan" "$out/$name.ply" --resolution "$resolution" --overwrite --quiet "$@" \
+    2>"$out/$name.log"; then
     measure "$name"
     "$tool" render "$out/$name.ply" "$out/$name.png" --overwrite
   else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The library in thirty lines: a scanner that does not exist looks at a sphere, and its depth maps become a
 // mesh.
+//   example_01_sphere [OUT.ply]
 #include <cstdio>
 #include <exception>
 
