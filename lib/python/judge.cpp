@@ -11,6 +11,7 @@
 #include "python/report.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/base/version.h"
 #include "vdbfuse/pipeline/judgement_folder.h"
 
 namespace vdbfuse::python {
@@ -24,7 +25,7 @@ struct JudgedSet {
 };
 using JudgedPointer = std::shared_ptr<JudgedSet>;
 
-JudgementOrigin originOf(const JudgedSet& judged) { return {VDBFUSE_VERSION, "", judged.format}; }
+JudgementOrigin originOf(const JudgedSet& judged) { return {version(), "", judged.format}; }
 
 JudgedPointer judgeData(const DataSet& data, const py::object& progress, const py::kwargs& keywords) {
   FuseRequest request;

@@ -3,9 +3,11 @@
 // modules written in Python beside it; they, not these, are for users.
 #include "python/module.h"
 
+#include "vdbfuse/base/version.h"
+
 PYBIND11_MODULE(_core, module) {
   using namespace vdbfuse::python;  // NOLINT: the one place that binds everything
-  module.attr("version") = VDBFUSE_VERSION;
+  module.attr("version") = vdbfuse::version();
   bindErrors();
   bindMesh(module);
   bindViews(module);
