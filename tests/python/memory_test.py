@@ -22,15 +22,14 @@ def resident():
 def everything_once(depths, poses):
     """One use of everything, failures too."""
     colors = np.zeros((*depths.shape, 3), np.uint8)
-    mesh = vdbfuse.fuse(lambda i: depths[i], INTRINSICS, poses, voxel=0.15, colors=colors, check=False, grids=True,
+    mesh = vdbfuse.fuse(lambda i: depths[i], INTRINSICS, poses, voxel=0.1, colors=colors, check=False, grids=True,
                         progress=lambda step, share: None)
     assert mesh.vertices.sum() != 0 and mesh.slice("surface", longest=32)[0].size > 0
     vdbfuse.judge((d for d in depths), INTRINSICS, poses)[0].outlier.sum()
-    vdbfuse.evaluate(mesh, (mesh.vertices, mesh.triangles), samples=500)
-    volume = vdbfuse.TSDF(voxel=0.15)
+    volume = vdbfuse.TSDF(voxel=0.1)
     volume.integrate(depths[0], INTRINSICS, poses[0])
     volume.changed_blocks()
-    scanner = vdbfuse.Scanner(voxel=0.15, when_full="wait")
+    scanner = vdbfuse.Scanner(voxel=0.1, when_full="wait")
     scanner.push(depths[0], INTRINSICS, poses[0])
     scanner.wait()
     try:
@@ -40,8 +39,8 @@ def everything_once(depths, poses):
 
 
 def test_nothing_leaks_in_200_runs():
-    depths, poses = sphere(6)
-    for _ in range(40):  # allocators and thread pools fill up
+    depths, poses = sphere(10)
+    for _ in range(25):  # allocators and thread pools fill up
         everything_once(depths, poses)
     gc.collect()
     objects, begin = len(gc.get_objects()), resident()
@@ -61,11 +60,11 @@ def test_sources_are_let_go_of():
 
         def __call__(self, index):
             return self.depths[index]
-    depths, poses = sphere(6)
+    depths, poses = sphere(10)
     frames = Frames(depths)
     watched = weakref.ref(frames)
     data = vdbfuse.data_set(frames, INTRINSICS, poses)
-    mesh = vdbfuse.fuse(data, voxel=0.15, check=False)
+    mesh = vdbfuse.fuse(data, voxel=0.1, check=False)
     del frames, data
     gc.collect()
     assert watched() is None and len(mesh.triangles) > 0
