@@ -38,6 +38,12 @@ endif()
 if(TARGET vdbfuse_tool)
   vdbfuse_install_rpath(vdbfuse_tool ${CMAKE_INSTALL_BINDIR})
   install(TARGETS vdbfuse_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool
+          FILES_MATCHING PATTERN "*.1")
+  install(FILES ${PROJECT_BINARY_DIR}/share/vdbfuse.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          RENAME vdbfuse COMPONENT tool)
+  install(FILES ${PROJECT_BINARY_DIR}/share/_vdbfuse DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+          COMPONENT tool)
 endif()
 
 if(TARGET vdbfuse_python)
@@ -72,3 +78,7 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/vdbfuse.pc.in ${PROJECT_BINARY_DIR}/vdbfuse.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/vdbfuse.pc DESTINATION ${pkgconfig_dir} COMPONENT development)
+if(VDBFUSE_THREE_DIR)  # a part of the library, then
+  install(FILES ${PROJECT_SOURCE_DIR}/lib/report/page/three_licence.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}
+          COMPONENT runtime)
+endif()

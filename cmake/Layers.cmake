@@ -19,7 +19,7 @@ set(VDBFUSE_LAYERS
     4:formats     # data sets of depth maps and of photographs, one pair of files a format
     4:fusion      # reliability, rho, sigma, TSDF
     4:surface     # field, mesh extraction
-    4:report      # pictures, slices
+    4:report      # pictures, slices, pages
     5:pipeline    # the whole line in one function; the live Scanner
     6:capi        # the library for C
     6:python)     # the Python package, a library of its own

@@ -2,7 +2,7 @@
 // A live scan: a sensor pushes frames at its own rate, a viewer asks for what changed of the surface, poses
 // of the second half turn out to have drifted and are corrected, and at the end the global cut of all frames
 // is made.
-//   example_live [FOLDER] [--rate HZ] [--voxel SIZE] [--frames N] [--size WxH] [--far DEPTH]
+//   example_07_live_scanning [FOLDER] [--rate HZ] [--voxel SIZE] [--frames N] [--size WxH] [--far DEPTH]
 //                [--key-distance L] [--out MESH.ply]
 // FOLDER: a data set of depth maps, played over and over until N frames are pushed; without it a synthetic
 // room. Prints the rate that was kept, how old a frame was when a preview showed it, and how long finish()

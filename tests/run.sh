@@ -4,8 +4,10 @@
 # and those of the cheap modules once more under the address and undefined-behaviour sanitizers, and feeds damaged files
 # to the readers.
 #
-#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, the
-#                           Debian packages in a clean system, the first steps of README.md in a clean clone
+#   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, HTML
+#                           of the pages, the report of vdbfuse compare in a browser, replay, completion, manual pages,
+#                           interrupts, full disks, the Debian packages in a clean system, the first steps of README.md in a
+#                           clean clone
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
 #   VDBFUSE_WITH_PYTHON=OFF (environment) without the Python package
 #   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
@@ -44,6 +46,21 @@ run_tests() {
   failed=$((failed + ${bad:-0}))
 }
 
+# run_script NAME COMMAND...: one result, with the last line that the command says; exit code 77: skipped.
+run_script() {
+  local name=$1 log code=0
+  shift
+  step "$name"
+  log=$(mktemp)
+  "$@" | tee "$log" || code=$?
+  case $code in
+    0) results+=("$name: passed: $(tail -n 1 "$log")"); total_passed=$((${total_passed:-0} + 1)) ;;
+    77) results+=("$name: skipped: $(tail -n 1 "$log")") ;;
+    *) results+=("$name: FAILED: $(tail -n 1 "$log")"); failed=$((failed + 1)) ;;
+  esac
+  rm "$log"
+}
+
 # build NAME FOLDER PRESET [cmake arguments]
 build() {
   local name=$1 folder=$2 preset=$3
@@ -53,19 +70,6 @@ build() {
     -DVDBFUSE_BUILD_EXAMPLES=ON -DVDBFUSE_WITH_PCL="$with_pcl" "$@" >"$folder.log" 2>&1 ||
     { cat "$folder.log"; exit 1; }
   rm "$folder.log"
-}
-
-# run_script NAME COMMAND...: one result; exit code 77: skipped.
-run_script() {
-  local name=$1 code=0
-  shift
-  step "$name"
-  "$@" || code=$?
-  case $code in
-    0) results+=("$name: passed"); total_passed=$((${total_passed:-0} + 1)) ;;
-    77) results+=("$name: skipped") ;;
-    *) results+=("$name: FAILED"); failed=$((failed + 1)) ;;
-  esac
 }
 
 step "Packages"
@@ -91,13 +95,7 @@ if [ "$all" = no ]; then
   cmake --build build-asan -j "$jobs" --target "${targets[@]}"
   for target in "${targets[@]}"; do
     module=${target#vdbfuse_test_}
-    if "build-asan/tests/$module/$target" --gtest_brief=1; then
-      results+=("sanitizers, $module: passed")
-      total_passed=$((${total_passed:-0} + 1))
-    else
-      results+=("sanitizers, $module: FAILED")
-      failed=$((failed + 1))
-    fi
+    run_script "sanitizers, $module" "build-asan/tests/$module/$target" --gtest_brief=1
   done
 else
   build "Sanitizers on everything" build-asan asan -DVDBFUSE_MODULES=
@@ -109,26 +107,19 @@ else
   build "Without PCL, static" build-static release -DVDBFUSE_WITH_PCL=OFF -DBUILD_SHARED_LIBS=OFF
   cmake --build build-static -j "$jobs"
   run_tests "static, without PCL" build-static -LE style
-  step "Names in every file (clang-tidy)"
-  if tests/style/tidy.sh build; then
-    results+=("names: passed")
-    total_passed=$((${total_passed:-0} + 1))
-  else
-    results+=("names: FAILED")
-    failed=$((failed + 1))
-  fi
+  run_script "Pages and headers as HTML, without a warning" cmake --build build --target vdbfuse_docs
+  run_script "The report of compare in a browser" tests/tool/compare_browser_test.py build/bin/vdbfuse build/compare_browser
+  run_script "Saved configurations give the same again" tests/tool/replay_test.sh build/bin/vdbfuse
+  run_script "Completion in bash and zsh" tests/tool/completion_test.sh build/bin/vdbfuse
+  run_script "Manual pages" tests/tool/manual_test.sh build/bin/vdbfuse
+  run_script "Ctrl-C during each step" tests/tool/interrupt_test.py build/bin/vdbfuse
+  run_script "Full disks" tests/tool/full_disk_test.py build/bin/vdbfuse
+  run_script "Names in every file (clang-tidy)" tests/style/tidy.sh build
   run_script "Debian packages in a clean system" tests/package/clean_system.sh
   run_script "First steps of README.md" tests/package/newcomer.sh --with-cache
 fi
 
-step "Fuzzers of the readers, $fuzz_seconds s each"
-if tests/fuzz/run.sh "$fuzz_seconds"; then
-  results+=("fuzzers: nothing found")
-  total_passed=$((${total_passed:-0} + 1))
-else
-  results+=("fuzzers: FAILED")
-  failed=$((failed + 1))
-fi
+run_script "Fuzzers of the readers, $fuzz_seconds s each" tests/fuzz/run.sh "$fuzz_seconds"
 
 step "Results"
 printf '%s\n' "${results[@]}"

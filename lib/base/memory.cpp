@@ -2,6 +2,9 @@
 #include "vdbfuse/base/memory.h"
 
 #include <sys/resource.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <algorithm>
 #include <cstdio>
@@ -50,6 +53,16 @@ std::size_t peakMemoryBytes() {
   rusage usage{};
   if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+PeakMemory restartPeakMemory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+  // Linux, proc(5): 5 resets the peak of the resident set.
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5" << std::flush;
+  return file ? PeakMemory::Restarted : PeakMemory::SinceTheStart;
 }
 
 std::string sizeText(std::size_t bytes) {

@@ -2,6 +2,7 @@
 #include <new>
 
 #include "capi/handles.h"
+#include "vdbfuse/base/version.h"
 
 namespace vdbfuse::capi {
 namespace {
@@ -54,7 +55,7 @@ void requireStructSize(std::uint64_t size, std::size_t first, std::size_t now, c
 
 uint32_t vdbfuse_abi_version(void) { return VDBFUSE_ABI_VERSION; }
 
-const char* vdbfuse_version(void) { return VDBFUSE_VERSION; }
+const char* vdbfuse_version(void) { return vdbfuse::version(); }
 
 const char* vdbfuse_status_name(vdbfuse_status status) {
   switch (status) {

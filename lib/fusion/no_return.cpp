@@ -2,6 +2,7 @@
 #include "vdbfuse/fusion/no_return.h"
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "vdbfuse/sensor/view.h"
@@ -72,13 +73,20 @@ Image<std::uint8_t> joinedToBorder(const Image<std::uint8_t>& mask) {
 
 }  // namespace
 
-Image<std::uint8_t> emptyRegions(const Image<float>& depth) {
-  Image<std::uint8_t> missing(depth.width(), depth.height());
-  std::transform(depth.begin(), depth.end(), missing.begin(),
-                 [](float d) { return static_cast<std::uint8_t>(d == kInvalidDepth); });
+Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& outlier) {
+  constexpr float kProbablyWrong = 0.75f;
+  Image<std::uint8_t> missing(depth.width(), depth.height()), passable(depth.width(), depth.height());
+  for (std::size_t p = 0; p < depth.size(); ++p) {
+    missing.data()[p] = depth.data()[p] == kInvalidDepth;
+    passable.data()[p] = missing.data()[p] || (!outlier.empty() && outlier.data()[p] > kProbablyWrong);
+  }
   const auto all = [](int ones, int pixels) { return static_cast<std::uint8_t>(ones == pixels); };
+  const auto most = [](int ones, int pixels) { return static_cast<std::uint8_t>(2 * ones > pixels); };
   const auto any = [](int ones, int) { return static_cast<std::uint8_t>(ones > 0); };
-  return joinedToBorder(filterSquare(filterSquare(missing, all), any));
+  Image<std::uint8_t> squares = filterSquare(passable, all);
+  const Image<std::uint8_t> mostly_missing = filterSquare(missing, most);
+  std::transform(squares.begin(), squares.end(), mostly_missing.begin(), squares.begin(), std::bit_and<>());
+  return joinedToBorder(filterSquare(squares, any));
 }
 
 double borderShare(const Image<std::uint8_t>& mask) {

@@ -63,7 +63,7 @@ void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoRetu
   std::vector<double> border_shares(unmasked.size());
   parallelFor(unmasked.size(), 1, [&](std::size_t k, std::size_t) {
     JudgedView& view = views[unmasked[k]];
-    const Image<std::uint8_t> empty = emptyRegions(view.depth);
+    const Image<std::uint8_t> empty = emptyRegions(view.depth, view.outlier);
     border_shares[k] = borderShare(empty);
     std::transform(empty.begin(), empty.end(), view.look.begin(),
                    [](std::uint8_t is_empty) { return is_empty ? Look::Empty : Look::Nothing; });
@@ -123,8 +123,8 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
   JudgedViews& judged = result.judged = believe(std::move(views), sensor, kMinOutlier, std::move(incidence));
   judged.miss_rate = testimonies.miss_rate;
   for (std::size_t i = 0; i < count; ++i) judged.views[i].weight = weights[i];
-  setNoReturns(unmasked, options.no_return, judged.views);
   setOutliers(testimonies, confidence, table, judged.views);
+  setNoReturns(unmasked, options.no_return, judged.views);
   result.domain = options.domain ? *options.domain : supportedDomain(judged);
   widenRange(judged, result.domain);
 
@@ -132,6 +132,7 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     examineDenial(judged, result.domain, testimonies, progress);
     table = learnReliability(testimonies, confidence);
     setOutliers(testimonies, confidence, table, judged.views);
+    setNoReturns(unmasked, options.no_return, judged.views);
   }
   for (std::size_t i = 0; i < count; ++i) {
     weighAlternatives(alternatives, i, testimonies, confidence[i], table, surfaces, judged.views[i]);

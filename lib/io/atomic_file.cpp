@@ -38,18 +38,20 @@ void refuseUnlessRegularOrNew(const fs::path& target) {
 }
 
 // Not mkstemp: its files are readable by their owner only, whatever the umask.
-fs::path createBeside(const fs::path& target) {
+std::unique_ptr<TemporaryPath> createBeside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
   for (;;) {
     const std::string unique = ".partial-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
     const fs::path name = "." + target.stem().string() + unique + target.extension().string();
-    fs::path temporary = target.parent_path() / name;
-    const int file = open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    auto temporary = std::make_unique<TemporaryPath>(target.parent_path() / name);
+    const int file = open(temporary->path().c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (file >= 0) {
       close(file);
       return temporary;
     }
-    if (errno != EEXIST) throw IoError(target, "", "a folder that can be written to", errorText(errno));
+    const int problem = errno;
+    temporary->keep();  // it is another's, or there is none
+    if (problem != EEXIST) throw IoError(target, "", "a folder that can be written to", errorText(problem));
   }
 }
 
@@ -68,17 +70,11 @@ AtomicFile::AtomicFile(fs::path target) : target_(followLink(target)) {
   temporary_ = createBeside(target_);
 }
 
-AtomicFile::~AtomicFile() {
-  if (committed_) return;
-  std::error_code ignored;
-  fs::remove(temporary_, ignored);
-}
-
 void AtomicFile::commit() {
   std::error_code error;
-  fs::rename(temporary_, target_, error);
+  fs::rename(temporary_->path(), target_, error);
   if (error) throw IoError(target_, "cannot be put in place: " + error.message());
-  committed_ = true;
+  temporary_->keep();
 }
 
 void writeTogether(const std::vector<Output>& outputs) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Binary glTF 2.0: a header, one chunk of JSON and one of bytes (the specification's section 4.4).
+#include "vdbfuse/io/glb.h"
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "mesh_formats.h"
+#include "vdbfuse/base/errors.h"
 
-namespace vdbfuse::io {
+namespace vdbfuse {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -64,7 +66,13 @@ std::size_t addPositions(const TriangleMesh& mesh, Contents& contents) {
   return accessor;
 }
 
-Json addAttributes(const TriangleMesh& mesh, Contents& contents) {
+void requireOneAVertex(const TriangleMesh& mesh, const VertexValues& values) {
+  if (values.values.size() == mesh.vertices.size()) return;
+  throw InvalidArgument(values.name, std::to_string(values.values.size()) + " values for " +
+                                         std::to_string(mesh.vertices.size()) + " vertices");
+}
+
+Json addAttributes(const TriangleMesh& mesh, const std::vector<VertexValues>& more, Contents& contents) {
   const auto same = [](float value) { return value; };
   Json attributes = {{"POSITION", addPositions(mesh, contents)}};
   if (!mesh.normals.empty()) attributes["NORMAL"] = contents.addFloats(mesh.normals, "VEC3", turned);
@@ -76,6 +84,10 @@ Json addAttributes(const TriangleMesh& mesh, Contents& contents) {
   if (!mesh.support.empty()) attributes["_SUPPORT"] = contents.addFloats(mesh.support, "SCALAR", same);
   if (!mesh.confidence.empty())
     attributes["_CONFIDENCE"] = contents.addFloats(mesh.confidence, "SCALAR", same);
+  for (const VertexValues& values : more) {
+    requireOneAVertex(mesh, values);
+    attributes[values.name] = contents.addFloats(values.values, "SCALAR", same);
+  }
   return attributes;
 }
 
@@ -83,9 +95,9 @@ void pad(std::string& chunk, char with) { chunk.resize((chunk.size() + 3) / 4 * 
 
 }  // namespace
 
-std::string formatGlb(const TriangleMesh& mesh) {
+std::string glbBytes(const TriangleMesh& mesh, const std::vector<VertexValues>& more) {
   Contents contents;
-  Json primitive = {{"attributes", addAttributes(mesh, contents)}, {"material", 0}};
+  Json primitive = {{"attributes", addAttributes(mesh, more, contents)}, {"material", 0}};
   std::string indices;
   for (const Triangle& t : mesh.triangles) append(indices, t.data(), sizeof t);
   primitive["indices"] =
@@ -113,4 +125,4 @@ std::string formatGlb(const TriangleMesh& mesh) {
   return file + contents.bytes;
 }
 
-}  // namespace vdbfuse::io
+}  // namespace vdbfuse

@@ -8,6 +8,7 @@
 #include "file_bytes.h"
 #include "mesh_formats.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/io/glb.h"
 
 namespace vdbfuse {
 namespace {
@@ -18,10 +19,12 @@ struct Format {
   std::string (*format)(const TriangleMesh&);
 };
 
+std::string formatGlb(const TriangleMesh& mesh) { return glbBytes(mesh); }
+
 constexpr Format kFormats[] = {{".ply", io::parsePly, io::formatPly},
                                {".obj", io::parseObj, io::formatObj},
                                {".stl", io::parseStl, io::formatStl},
-                               {".glb", nullptr, io::formatGlb}};
+                               {".glb", nullptr, formatGlb}};
 
 const Format& formatOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();

@@ -19,6 +19,4 @@ std::string formatObj(const TriangleMesh& mesh);
 TriangleMesh parseStl(const std::filesystem::path& path, std::string_view bytes);
 std::string formatStl(const TriangleMesh& mesh);
 
-std::string formatGlb(const TriangleMesh& mesh);
-
 }  // namespace vdbfuse::io

@@ -8,6 +8,8 @@
 #include <limits>
 #include <optional>
 
+#include "vdbfuse/base/parallel.h"
+
 namespace vdbfuse {
 namespace {
 
@@ -200,6 +202,15 @@ SurfacePoint ClosestPoint::query(const Vector3d& point) const {
   NearestTriangle nearest(point, impl_->surface);
   if (impl_->tree) impl_->tree->findNeighbors(nearest, point.data(), flann::SearchParams());
   return nearest.best();
+}
+
+std::vector<float> vertexDistances(const TriangleMesh& mesh, const ClosestPoint& surface) {
+  std::vector<float> distances(mesh.vertices.size());
+  parallelFor(distances.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      distances[i] = static_cast<float>(surface.query(mesh.vertices[i].cast<double>()).distance);
+  });
+  return distances;
 }
 
 }  // namespace vdbfuse

@@ -46,6 +46,16 @@ double area(const TriangleMesh& mesh) {
   return sum;
 }
 
+std::vector<double> vertexAreas(const TriangleMesh& mesh) {
+  std::vector<double> areas(mesh.vertices.size(), 0.0);
+  for (const Triangle& t : mesh.triangles) {
+    const Corners k = corners(mesh, t);
+    const double third = (k.b - k.a).cross(k.c - k.a).norm() / 6;
+    for (const std::uint32_t v : t) areas[v] += third;
+  }
+  return areas;
+}
+
 double signedVolume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles) {

@@ -6,11 +6,13 @@
 #include <cstdio>
 
 #include "pipeline/cells.h"
+#include "pipeline/fuse_judged.h"
 #include "pipeline/steps.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/fusion/agreement.h"
 #include "vdbfuse/fusion/tsdf.h"
 #include "vdbfuse/pipeline/judge_scan.h"
+#include "vdbfuse/pipeline/parameters.h"
 #include "vdbfuse/sensor/view_windows.h"
 #include "vdbfuse/surface/extract.h"
 #include "vdbfuse/surface/rim.h"
@@ -38,9 +40,11 @@ void finishMesh(const ReconstructOptions& options, Reconstruction& result) {
 }
 
 // The minimum of (1): the paper's section 3 from the depth maps on.
-void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
-                   const ReconstructOptions& options, const std::vector<int>& reduction,
-                   const Progress& progress, StepTimer& timer, Reconstruction& result) {
+void cutVisibility(const JudgedViews& judged, const Parameters& parameters, const ReconstructOptions& options,
+                   const std::vector<int>& reduction, const Progress& progress, StepTimer& timer,
+                   Reconstruction& result) {
+  const Box& domain = parameters.domain;
+  const GridFrame frame{parameters.voxel};
   timer.start("agreement");
   ScalarGrid support = countAgreement(judged, frame, domain, progress);  // C(x), eq. (3)
 
@@ -48,8 +52,8 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   Octree octree = buildOctree(support, kSupported, domain, octreeOptions(frame, result.calibration, options));
 
   timer.start("evidence");
-  const EvidenceOptions evidence_options = evidenceOptions(domain, options);
-  const CutOptions cut_options = cutOptions(judged, domain, frame, result.calibration, options);
+  const EvidenceOptions& evidence_options = parameters.evidence;
+  const CutOptions& cut_options = parameters.cut;
   const CellsWithEvidence cells =
       evaluateFromCoarseToFine(judged, support, std::move(octree), evidence_options,
                                {cut_options.lambda, cut_options.max_evidence}, progress);  // σ(x)
@@ -91,25 +95,16 @@ void cutVisibility(const JudgedViews& judged, const GridFrame& frame, const Box&
   result.grids.push_back(std::move(surface.distance));
 }
 
-double chooseTruncation(const TsdfMethod& method, double voxel, const CalibrationReport& calibration) {
-  if (method.truncation > 0) return method.truncation;
-  if (method.otherwise == TsdfMethod::Truncation::FromOutliers)
-    return truncationFor(calibration.noise_scale,
-                         std::clamp<double>(calibration.outlier_share, kMinOutlier, kMaxOutlier));
-  return std::max(4 * voxel, 3 * calibration.noise_scale);
-}
-
-TsdfVolume startVolume(const GridFrame& frame, const Box& domain, const ReconstructOptions& options,
-                       const CalibrationReport& calibration) {
+TsdfVolume startVolume(const Parameters& parameters, const ReconstructOptions& options) {
   if (options.tsdf.start) {
     TsdfVolume volume = std::move(*options.tsdf.start);
-    volume.growDomain(domain);
+    volume.growDomain(parameters.domain);
     return volume;
   }
   TsdfOptions tsdf;
-  tsdf.truncation = chooseTruncation(options.tsdf, frame.voxel, calibration);
-  tsdf.domain = domain;
-  return {frame, tsdf};
+  tsdf.truncation = parameters.truncation;
+  tsdf.domain = parameters.domain;
+  return {GridFrame{parameters.voxel}, tsdf};
 }
 
 // Views that are believed as far as they were judged.
@@ -130,18 +125,17 @@ void integrateViews(const JudgedViews& judged, const TsdfMethod& method, const P
     with_each("carve", [&](const TsdfInput& input) { volume.carve(input); });
 }
 
-void fuseTsdf(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
-              const ReconstructOptions& options, const Progress& progress, StepTimer& timer,
-              Reconstruction& result) {
+void fuseTsdf(const JudgedViews& judged, const Parameters& parameters, const ReconstructOptions& options,
+              const Progress& progress, StepTimer& timer, Reconstruction& result) {
   timer.start("integrate");
   const TsdfMethod& method = options.tsdf;
-  TsdfVolume volume = startVolume(frame, domain, options, result.calibration);
+  TsdfVolume volume = startVolume(parameters, options);
   integrateViews(judged, method, progress, volume);
   result.truncation = volume.options().truncation;
 
   timer.start("surface");
   ScalarGrid distance = volume.distance(static_cast<float>(method.least_weight));
-  result.grid = describeGrid(distance, domain);
+  result.grid = describeGrid(distance, parameters.domain);
   for (int pass = 0; pass < method.close_gaps; ++pass) distance = closeGaps(distance);
   result.mesh = extractSurface(distance, progress);
   if (method.trim_rim > 0) trimRim(method.trim_rim, result.mesh);
@@ -161,21 +155,29 @@ Reconstruction reconstruct(const ViewSequence& views, const ReconstructOptions& 
 
 Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, const Progress& progress) {
   requireUsable(options);
+  useOptions(options, scan);
+  return fuseJudged(scan, options, progress);
+}
+
+void useOptions(const ReconstructOptions& options, JudgedScan& scan) {
+  if (options.domain) useDomain(*options.domain, scan.judgement);
+  scan.judgement.judged.sensor.prior_decay = options.prior_decay;
+}
+
+Reconstruction fuseJudged(const JudgedScan& scan, const ReconstructOptions& options,
+                          const Progress& progress) {
   Reconstruction result;
   StepTimer timer;
   result.width = scan.width, result.height = scan.height;
   result.memory = {scan.plan.memory_budget, scan.plan.estimated_memory, scan.plan.window_bytes};
   result.calibration = scan.calibration;
-  if (options.domain) useDomain(*options.domain, scan.judgement);
-  scan.judgement.judged.sensor.prior_decay = options.prior_decay;
   const JudgedViews& judged = scan.judgement.judged;
-  const Box& domain = scan.judgement.domain;
-  const GridFrame frame = chooseFrame(domain, result.calibration, options);
+  const Parameters parameters = resolveParameters(scan, options);
 
   if (options.method == Method::Tsdf) {
-    fuseTsdf(judged, frame, domain, options, progress, timer, result);
+    fuseTsdf(judged, parameters, options, progress, timer, result);
   } else {
-    cutVisibility(judged, frame, domain, options, scan.plan.reduction, progress, timer, result);
+    cutVisibility(judged, parameters, options, scan.plan.reduction, progress, timer, result);
   }
   if (result.mesh.triangles.empty() && (options.trim > 0 || options.min_component > 0))
     throw Error("the result is empty: trim or min_component leaves nothing of the surface");
@@ -184,7 +186,7 @@ Reconstruction reconstruct(JudgedScan scan, const ReconstructOptions& options, c
         "the result is empty: no surface inside the domain is supported by the depth maps "
         "(check units and poses with 'vdbfuse info', or give --bbox)");
   }
-  result.steps = std::move(scan.steps);
+  result.steps = scan.steps;
   for (StepTime& step : timer.finish()) result.steps.push_back(std::move(step));
   return result;
 }

@@ -29,13 +29,6 @@ NoiseLaw lawThrough(double scale, double typical, int exponent) {
   return exponent == 1 ? NoiseLaw{0, factor, 0} : NoiseLaw{0, 0, factor};
 }
 
-Border chooseBorder(const JudgedViews& judged, const Box& domain) {
-  const std::vector<Eigen::Vector3d> sensors = sensorPositions(judged);
-  const auto inside =
-      std::count_if(sensors.begin(), sensors.end(), [&](const auto& p) { return domain.contains(p); });
-  return 2 * static_cast<std::size_t>(inside) > sensors.size() ? Border::Solid : Border::Outside;
-}
-
 }  // namespace
 
 std::vector<std::string> validate(const ReconstructOptions& options) {
@@ -141,12 +134,31 @@ void useDomain(const Box& domain, Judgement& judgement) {
   widenRange(judgement.judged, domain);
 }
 
+VoxelChoice chooseVoxel(const Box& domain, const CalibrationReport& calibration,
+                        const ReconstructOptions& options) {
+  using From = Parameters::VoxelFrom;
+  const double longest = domain.sizes().maxCoeff();
+  if (options.voxel > 0) return {options.voxel, From::Voxel};
+  if (options.resolution > 0) return {longest / options.resolution, From::Resolution};
+  VoxelChoice choice{calibration.point_spacing, From::PointSpacing};
+  if (calibration.noise_scale > choice.size) choice = {calibration.noise_scale, From::Noise};
+  if (longest / kDefaultLongestSide > choice.size)
+    choice = {longest / kDefaultLongestSide, From::LongestSide};
+  return choice;
+}
+
 GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
                       const ReconstructOptions& options) {
-  const double longest = domain.sizes().maxCoeff();
-  if (options.voxel > 0) return {options.voxel};
-  if (options.resolution > 0) return {longest / options.resolution};
-  return {std::max({calibration.point_spacing, calibration.noise_scale, longest / kDefaultLongestSide})};
+  return {chooseVoxel(domain, calibration, options).size};
+}
+
+std::size_t countInside(const std::vector<Eigen::Vector3d>& points, const Box& box) {
+  return static_cast<std::size_t>(
+      std::count_if(points.begin(), points.end(), [&](const auto& p) { return box.contains(p); }));
+}
+
+Border chooseBorder(std::size_t inside, std::size_t sensors) {
+  return 2 * inside > sensors ? Border::Solid : Border::Outside;
 }
 
 OctreeOptions octreeOptions(const GridFrame& frame, const CalibrationReport& calibration,
@@ -168,7 +180,8 @@ CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFr
   cut.mu = options.mu;
   cut.lambda =
       options.lambda > 0 ? options.lambda : kLambdaPerVoxel / std::max(frame.voxel, calibration.noise_scale);
-  cut.border = options.border.value_or(chooseBorder(judged, domain));
+  const std::vector<Eigen::Vector3d> sensors = sensorPositions(judged);
+  cut.border = options.border.value_or(chooseBorder(countInside(sensors, domain), sensors.size()));
   return cut;
 }
 

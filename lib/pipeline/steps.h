@@ -5,6 +5,7 @@
 #include "vdbfuse/fusion/calibrate.h"
 #include "vdbfuse/fusion/domain.h"
 #include "vdbfuse/pipeline/judge_scan.h"
+#include "vdbfuse/pipeline/parameters.h"
 
 namespace vdbfuse {
 
@@ -27,6 +28,13 @@ Judgement judgeViews(std::vector<View> views, const SensorModel& sensor, const V
 /// Reconstructs there, whatever place was judged.
 void useDomain(const Box& domain, Judgement& judgement);
 
+struct VoxelChoice {
+  double size = 0;
+  Parameters::VoxelFrom from = Parameters::VoxelFrom::Voxel;
+};
+VoxelChoice chooseVoxel(const Box& domain, const CalibrationReport& calibration,
+                        const ReconstructOptions& options);
+
 /// Voxels at integer multiples of the voxel size from the world's origin.
 GridFrame chooseFrame(const Box& domain, const CalibrationReport& calibration,
                       const ReconstructOptions& options);
@@ -43,6 +51,8 @@ double leastWidth(const std::vector<int>& reduction, const CalibrationReport& ca
                   const ReconstructOptions& options);
 
 EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& options);
+
+std::size_t countInside(const std::vector<Eigen::Vector3d>& points, const Box& box);
 
 std::vector<Eigen::Vector3d> sensorPositions(const JudgedViews& judged);
 

@@ -44,14 +44,15 @@ SimplifyReport simplify(const SimplifyOptions& options, TriangleMesh& mesh) {
       meshopt_simplifyScale(mesh.vertices.front().data(), mesh.vertices.size(), sizeof(Eigen::Vector3f));
   const float error = options.tolerance > 0 ? static_cast<float>(options.tolerance) / extent
                                             : std::numeric_limits<float>::max();
-  const TopologyReport before = topology(mesh);
+  const bool keeps = options.topology == SimplifyOptions::Topology::Keep;
+  const TopologyReport before = keeps ? topology(mesh) : TopologyReport();
   TriangleMesh result = mesh;
   // From what was asked for towards the mesh as it is, until nothing is broken.
   for (std::size_t target = options.triangles; target < mesh.triangles.size();
        target += (mesh.triangles.size() - target + 7) / 8) {
     Attempt tried = attempt(mesh, target, error);
     result.triangles = std::move(tried.triangles);
-    if (!isAsGood(topology(result), before)) continue;
+    if (keeps && !isAsGood(topology(result), before)) continue;
     mesh = std::move(result);
     dropUnusedVertices(mesh);
     return {mesh.triangles.size(), static_cast<double>(tried.error) * extent};

@@ -47,6 +47,28 @@ TEST(NoReturn, IsolatedMissesAndNarrowStripsAreChance) {
   EXPECT_EQ(borderShare(empty), 0.0);
 }
 
+TEST(NoReturn, DepthsThatAreProbablyWrongDoNotInterruptEmptySpace) {
+  Image<float> depth = boxImage();
+  Image<float> outlier(60, 50, 0.01f);
+  for (int y = 0; y < 50; y += 3) {
+    for (int x = 0; x < 60; x += 3) {
+      if (depth(x, y) != kInvalidDepth) continue;
+      depth(x, y) = 2.0f;
+      outlier(x, y) = 0.9f;
+    }
+  }
+  EXPECT_EQ(emptyRegions(depth)(5, 5), 0);
+  EXPECT_EQ(emptyRegions(depth, outlier)(5, 5), 1);
+  EXPECT_EQ(emptyRegions(depth, outlier)(30, 25), 0);
+  std::fill(outlier.begin(), outlier.end(), 0.5f);  // who knows
+  EXPECT_EQ(emptyRegions(depth, outlier)(5, 5), 0);
+}
+
+TEST(NoReturn, NothingButDepthsThatAreProbablyWrongIsNotEmpty) {
+  const Image<float> depth(60, 50, 1.0f), outlier(60, 50, 0.9f);
+  EXPECT_EQ(borderShare(emptyRegions(depth, outlier)), 0.0);
+}
+
 TEST(NoReturn, FullAndTinyImagesAreNoTrouble) {
   EXPECT_EQ(borderShare(emptyRegions(Image<float>(3, 2, kInvalidDepth))), 1.0);
   EXPECT_EQ(borderShare(emptyRegions(Image<float>(3, 2, 1.0f))), 0.0);

@@ -10,6 +10,7 @@
 #include "io/temporary_folder.h"
 #include "mesh/shapes.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/io/glb.h"
 #include "vdbfuse/mesh/topology.h"
 
 namespace vdbfuse {
@@ -295,6 +296,24 @@ TEST(MeshFile, AGlbIsWrittenAndNotRead) {
   writeMesh(folder / "a.glb", test::sphere(1.0, 1));
   EXPECT_THAT(messageOf<IoError>([&] { readMesh(folder / "a.glb"); }),
               testing::HasSubstr("expected a mesh to read: .ply, .obj or .stl, found .glb"));
+}
+
+TEST(Glb, CarriesValuesOfOnesOwn) {
+  const TriangleMesh mesh = test::sphere(1.0, 1);
+  const std::string bytes = glbBytes(mesh, {{"_DISTANCE", std::vector<float>(mesh.vertices.size(), 2.0f)}});
+  EXPECT_NE(bytes.find("\"_DISTANCE\":"), std::string::npos);
+  EXPECT_EQ(bytes.size() % 4, 0u);
+  EXPECT_EQ(messageOf<InvalidArgument>([&] {
+              glbBytes(mesh, {{"_DISTANCE", {1, 2}}});
+            }),
+            "_DISTANCE: 2 values for " + std::to_string(mesh.vertices.size()) + " vertices");
+}
+
+TEST(Glb, IsWhatTheFileHolds) {
+  const TemporaryFolder folder;
+  const TriangleMesh mesh = test::sphere(1.0, 1);
+  writeMesh(folder / "a.glb", mesh);
+  EXPECT_EQ(readText(folder / "a.glb"), glbBytes(mesh));
 }
 
 }  // namespace

@@ -114,5 +114,25 @@ TEST(ClosestPointOnTriangle, FindsFaceEdgesCornersAndTheRestOfATriangleWithoutAr
   EXPECT_EQ(closestPointOnTriangle({1, 5, 0}, b, b, b), b);
 }
 
+TEST(ClosestPoint, DistancesOfVerticesAreThoseOfTheirPoints) {
+  const TriangleMesh sphere = test::sphere(1.0, 3), larger = test::sphere(1.5, 3);
+  const ClosestPoint surface(sphere);
+  const std::vector<float> distances = vertexDistances(larger, surface);
+  ASSERT_EQ(distances.size(), larger.vertices.size());
+  for (std::size_t i = 0; i < distances.size(); ++i)
+    EXPECT_FLOAT_EQ(distances[i],
+                    static_cast<float>(surface.query(larger.vertices[i].cast<double>()).distance));
+  EXPECT_TRUE(vertexDistances({}, surface).empty());
+}
+
+TEST(TriangleMesh, AreasOfVerticesSumToTheArea) {
+  TriangleMesh mesh = test::sphere(1.0, 3);
+  mesh.vertices.emplace_back(9, 9, 9);  // of no triangle
+  double sum = 0;
+  for (const double a : vertexAreas(mesh)) sum += a;
+  EXPECT_NEAR(sum, area(mesh), 1e-9);
+  EXPECT_EQ(vertexAreas(mesh).back(), 0);
+}
+
 }  // namespace
 }  // namespace vdbfuse

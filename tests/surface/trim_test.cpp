@@ -110,6 +110,23 @@ TEST(Simplify, FlatPartsNeedNoTrianglesWithinATolerance) {
   EXPECT_NEAR(signedVolume(mesh), 1, 1e-3);
 }
 
+TEST(Simplify, GoesFurtherWhereTheTopologyMayChange) {
+  TriangleMesh many;  // spheres that cannot all become smaller than an octahedron and stay
+  for (std::uint32_t k = 0; k < 40; ++k) {
+    const TriangleMesh sphere = test::sphere(1.0, 1);
+    const auto first = static_cast<std::uint32_t>(many.vertices.size());
+    for (const Eigen::Vector3f& v : sphere.vertices)
+      many.vertices.emplace_back(v + Eigen::Vector3f(3.0f * static_cast<float>(k), 0, 0));
+    for (const auto& [a, b, c] : sphere.triangles)
+      many.triangles.push_back({a + first, b + first, c + first});
+  }
+  TriangleMesh kept = many, free = many;
+  simplify({80, 0}, kept);
+  simplify({80, 0, SimplifyOptions::Topology::MayChange}, free);
+  EXPECT_EQ(topology(kept).components, 40u);
+  EXPECT_LT(free.triangles.size(), kept.triangles.size());
+}
+
 TEST(Simplify, NeedsANumberOrATolerance) {
   TriangleMesh mesh = test::sphere();
   EXPECT_THROW(simplify({}, mesh), InvalidArgument);

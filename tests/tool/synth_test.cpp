@@ -113,7 +113,7 @@ TEST(Synth, SaysWhatIsWrongWithItsOptions) {
     return run.err;
   };
   EXPECT_THAT(words("--size 64"), HasSubstr("--size: expected WIDTHxHEIGHT, found '64'"));
-  EXPECT_THAT(words("--arc moon"), HasSubstr("expected front|full|ring|room|upper, found 'moon'"));
+  EXPECT_THAT(words("--arc moon"), HasSubstr("--arc: 'moon' is none of front, full, ring, room, upper"));
   EXPECT_THAT(words("--views 0 --missing 2"),
               HasSubstr("views must be positive; the share of missing pixels must lie in [0, 1]"));
   EXPECT_THAT(words("--images-only"), HasSubstr("--images-only requires --textured"));

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "cli/one_of.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse::tool {
@@ -20,7 +21,7 @@ Eigen::Vector3d axisNamed(const std::string& name) {
   return sign * Eigen::Vector3d::Unit(name.back() - 'x');
 }
 
-CLI::Validator axisCheck() { return CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}); }
+CLI::Validator axisCheck() { return oneOf({"x", "y", "z", "-x", "-y", "-z"}); }
 
 std::optional<Box> boxOf(const std::vector<double>& b) {
   if (b.empty()) return std::nullopt;

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // vdbfuse convert INPUT OUTDIR --to FORMAT: a data set in another format.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/number_check.h"
+#include "cli/one_of.h"
 #include "commands.h"
 #include "output_folder.h"
 #include "progress_line.h"
 #include "read_options.h"
+#include "run_options.h"
 #include "vdbfuse/formats/depth_set.h"
 
 namespace vdbfuse::tool {
@@ -17,13 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Request {
+struct Request : RunArguments {
   fs::path input, output;
   std::string to;
   ReadArguments read;
   WriteOptions write;
   std::size_t views = 0;
-  bool overwrite = false, quiet = false;
 };
 
 std::vector<std::string> writableFormats() {
@@ -41,47 +44,74 @@ ReadOptions readBack(const Request& request) {
   return options;
 }
 
+Json jsonOf(const Request& request, const DepthSet& set, const DepthReading& reading) {
+  Json json = tool::jsonOf("convert");
+  json["options"] = tool::jsonOf(request.read);
+  json["options"]["input"] = request.input.string();
+  json["options"]["to"] = request.to;
+  json["input"] = {{"views", set.views.size()}, {"format", set.format}};
+  json["written"] = {{"path", request.output.string()},
+                     {"stored", reading.stored},
+                     {"scale", reading.scale},
+                     {"invalid", reading.invalid}};
+  json["notes"] = set.notes;
+  return json;
+}
+
 void run(const Request& request) {
+  refuseExistingJson(request);
   DepthSet set = readInput(request.input, request.read);
   if (request.views > 0) set.views = set.views.first(request.views);
   refuseToReplace(request.output, request.input);
   OutputFolder output(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
   {
-    const ProgressLine line(request.quiet);
+    const ProgressLine line(request.quiet, {{"write", 1}});
     writeDepthSet(output.temporaryPath(), request.to, set.views, request.write, line.progress());
   }
   const DepthReading reading = readDepthSet(output.temporaryPath(), readBack(request)).reading;
+  JsonReport json(request, jsonOf(request, set, reading));
   output.commit();
+  json.commit();
   if (request.quiet) return;
   if (request.write.depth_scale && reading.scale != *request.write.depth_scale)
     std::fprintf(stderr, "note: %s has no place for the step; tell its readers (--depth-scale %g)\n",
                  request.to.c_str(), *request.write.depth_scale);
   for (const std::string& note : set.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-  std::printf("%s: %zu views, %s; %s\n", request.output.c_str(), set.views.size(), request.to.c_str(),
-              depthText(reading).c_str());
+  if (speaks(request))
+    std::printf("%s: %zu views, %s; %s\n", request.output.c_str(), set.views.size(), request.to.c_str(),
+                depthText(reading).c_str());
 }
 
 }  // namespace
 
 void addConvert(CLI::App& app, Action& action) {
-  CLI::App& sub = *app.add_subcommand("convert", "Write a data set in another format");
-  sub.footer(
-      "Depths, poses, cameras, and confidences and pictures where the format has a place for them. Formats "
-      "that\n"
-      "hold whole numbers round to steps of --step.\n\n"
-      "Example: vdbfuse convert scan/ workspace/ --to colmap");
+  CLI::App& sub = *app.add_subcommand("convert",
+                                      "Write a data set in another format\n\n"
+                                      "Depths, poses, cameras, and confidences and pictures where the format "
+                                      "has a place for them. Formats that "
+                                      "hold whole numbers round to steps of --step.");
+  sub.footer("vdbfuse convert scan/ workspace/ --to colmap");
   auto request = std::make_shared<Request>();
-  sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
-  sub.add_option("OUTDIR", request->output, "Folder to write")->required();
-  sub.add_option("--to", request->to, "Format to write")->required()->check(CLI::IsMember(writableFormats()));
-  addReadOptions(sub, request->read);
+  sub.add_option("INPUT,--input", request->input, "Data set")->type_name("PATH")->required();
+  sub.add_option("OUTDIR,--output", request->output, "Folder to write")->type_name("FOLDER")->required();
+  sub.option_defaults()->group("Output");
+  sub.add_option("--to", request->to, "Format to write")
+      ->required()
+      ->transform(oneOf(writableFormats()))
+      ->type_name("WORD");
   sub.add_option_function<double>(
          "--step", [request](double step) { request->write.depth_scale = step; },
-         "Length of one step of formats that hold whole numbers; default: what their readers expect")
-      ->check(CLI::PositiveNumber);
-  sub.add_option("--views", request->views, "The first N views only")->check(CLI::PositiveNumber);
-  sub.add_flag("--overwrite", request->overwrite, "Replace a folder that is not empty");
-  sub.add_flag("--quiet", request->quiet, "Print errors only");
+         "Length of one step of formats that hold whole numbers")
+      ->check(positiveNumber())
+      ->type_name("LENGTH")
+      ->option_text("what the format's readers expect");
+  addReadOptions(sub, request->read);
+  sub.add_option("--views", request->views, "The first N views only")
+      ->check(positiveNumber())
+      ->type_name("N")
+      ->option_text("all");
+  addJsonOption(sub, request->json, "Write what was done as one JSON object");
+  addRunOptions(sub, *request);
   sub.callback([&action, request] { action = [request] { run(*request); }; });
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "commands.h"
+#include "run_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/formats/image_set.h"
@@ -53,25 +54,58 @@ void explainAll(const auto& formats, const std::filesystem::path& path) {
 }
 
 void explain(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path))
-    throw IoError(path, "", "a data set of depth maps or photographs", "nothing of that name");
   std::printf("%s\n", kDepthTitle);
   explainAll(depthSetFormats(), path);
   std::printf("\n%s\n", kImageTitle);
   explainAll(imageSetFormats(), path);
 }
 
+struct FormatsOptions : RunArguments {
+  std::filesystem::path path;
+};
+
+// Of each format its name, its layout and, where there is something to look at, how far it fits.
+Json jsonOf(const auto& formats, const std::filesystem::path& path) {
+  Json list = Json::array();
+  for (const auto& format : formats) {
+    Json one = {{"name", format.name}, {"description", format.description}, {"layout", format.layout}};
+    if (!path.empty()) {
+      const Detection found = format.detect(path);
+      one["fits"] = fitText(found.fit), one["reason"] = found.reason;
+    }
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+void run(const FormatsOptions& options) {
+  refuseExistingJson(options);
+  const auto& path = options.path;
+  if (!path.empty() && !std::filesystem::exists(path))
+    throw IoError(path, "", "a data set of depth maps or photographs", "nothing of that name");
+  if (speaks(options)) path.empty() ? list() : explain(path);
+  Json json = tool::jsonOf("formats");
+  json["depth_maps"] = jsonOf(depthSetFormats(), path);
+  json["photographs"] = jsonOf(imageSetFormats(), path);
+  JsonReport(options, json).commit();
+}
+
 }  // namespace
 
 void addFormats(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("formats",
-                                         "List the formats of data sets that can be read, each with an "
-                                         "example of its layout; or say for a folder\n"
-                                         "or file which of them it fits, and what the others miss.\n\n"
-                                         "Example: vdbfuse formats\n         vdbfuse formats scan/");
-  const auto path = std::make_shared<std::filesystem::path>();
-  command->add_option("PATH", *path, "Data set to look at");
-  command->callback([&action, path] { action = [path] { path->empty() ? list() : explain(*path); }; });
+  CLI::App& sub =
+      *app.add_subcommand("formats",
+                          "List the formats of data sets, or say which of them a folder or file fits\n\n"
+                          "Without PATH: each format with an example of its layout. With PATH: what fits, "
+                          "and what the others miss.");
+  sub.footer("vdbfuse formats\nvdbfuse formats scan/");
+  const auto options = std::make_shared<FormatsOptions>();
+  sub.add_option("PATH,--input", options->path, "Data set to look at")
+      ->type_name("PATH")
+      ->option_text("none");
+  addJsonOption(sub, options->json, "Write the same as JSON");
+  addRunOptions(sub, *options);
+  sub.callback([&action, options] { action = [options] { run(*options); }; });
 }
 
 }  // namespace vdbfuse::tool

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // vdbfuse fuse INPUT OUT: depth maps, or photographs, to a surface.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "arguments.h"
-#include "choice.h"
 #include "commands.h"
-#include "fuse_photographs.h"
+#include "fuse_explain.h"
+#include "fuse_options.h"
 #include "fuse_report.h"
-#include "json_file.h"
-#include "memory_option.h"
+#include "interrupts.h"
 #include "progress_line.h"
-#include "sensor_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -30,148 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::map<std::string, Method> kMethods = {{"visibility", Method::Visibility}, {"tsdf", Method::Tsdf}};
-const std::map<std::string, EvidenceRule> kRules = {{"outside", EvidenceRule::Outside},
-                                                    {"paper", EvidenceRule::Paper},
-                                                    {"no-self-occlusion", EvidenceRule::NoSelfOcclusion},
-                                                    {"constant", EvidenceRule::Constant}};
-
-const std::map<std::string, CompletionOptions::Kind> kCompletions = {
-    {"isotropic", CompletionOptions::Kind::Isotropic}, {"none", CompletionOptions::Kind::None}};
-
-struct Request {
-  fs::path input, output, judgement, grids, json, volume;
-  SensorArguments sensor;
-  PhotographArguments photographs;
-  ReconstructOptions reconstruct;
-  std::string border = "auto", thickness = "auto", color = "auto", truncation = "auto";
-  std::vector<std::string> weights;
-  bool carve = false;
-  int threads = 0;
-  bool overwrite = false, quiet = false;
-};
-
-void addGridOptions(CLI::App& app, Request& r) {
-  auto* voxel =
-      app.add_option("--voxel", r.reconstruct.voxel, "Edge of the finest cells, in the unit of the poses")
-          ->check(CLI::PositiveNumber);
-  app.add_option("--resolution", r.reconstruct.resolution, "Instead: longest side of the domain / voxel")
-      ->check(CLI::PositiveNumber)
-      ->excludes(voxel);
-  app.add_option("--border", r.border, "What lies beyond the domain")
-      ->check(CLI::IsMember({"auto", "outside", "solid", "free"}))
-      ->capture_default_str();
-}
-
-void addEnergyOptions(CLI::App& app, Request& r) {
-  ReconstructOptions& o = r.reconstruct;
-  choice(app, "--method", o.method, kMethods, "Global cut, or Curless-Levoy");
-  choice(app, "--rule", o.evidence.rule, kRules, "How the views' testimony is combined");
-  app.add_option("--visibility-prior", o.evidence.visibility_prior, "a of the prior Beta(v; a, 1)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--visibility", o.evidence.visibility, "One visibility v in place of the prior")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--prior", o.evidence.prior, "Largest prior log-odds of outside")->capture_default_str();
-  app.add_option("--balloon", o.evidence.balloon, "Inflation of --rule constant, log-odds")
-      ->capture_default_str();
-  app.add_option("--thickness", r.thickness,
-                 "How far behind a measured surface solid is to be expected, length; auto: 0.11 "
-                 "of the domain's diagonal; off: any distance alike")
-      ->capture_default_str();
-  app.add_option("--depth-prior", o.prior_decay,
-                 "Decay length of the prior of the depth behind which a point is hidden; default: flat")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--lambda", o.lambda, "Weight of the evidence, 1/length; default 0.6/voxel")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--mask-error", o.evidence.mask_error, "Share of the pixels of masks that are wrong")
-      ->check(CLI::Range(1e-6, 0.499))
-      ->capture_default_str();
-  app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap")->capture_default_str();
-  app.add_option("--trim", o.trim, "Cut away what fewer views than this agree on (0.3: what was invented)")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--min-component", o.min_component,
-                 "Drop components with a bounding box of a smaller diagonal, length; default: keep all")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--simplify", o.simplify, "Leave about so many triangles; flat parts get fewer")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--color", r.color, "auto: from the pictures, where the input has some")
-      ->check(CLI::IsMember({"auto", "none"}))
-      ->capture_default_str();
-  choice(app, "--completion", o.completion.kind, kCompletions,
-         "Where nothing was measured: a minimal surface, or the faces of the cut");
-}
-
-void addTsdfOptions(CLI::App& app, Request& r) {
-  TsdfMethod& t = r.reconstruct.tsdf;
-  app.add_option("--truncation", r.truncation,
-                 "Of --method tsdf: auto: 4 voxels, or 3 x the noise; outliers: what stands for their share; "
-                 "or a length")
-      ->capture_default_str();
-  app.add_option("--continue", r.volume,
-                 "Of --method tsdf: a volume that --save-grids wrote, to take more views in")
-      ->check(CLI::ExistingFile)
-      ->excludes("--voxel")
-      ->excludes("--resolution")
-      ->excludes("--truncation");
-  app.add_flag("--carve", r.carve,
-               "Of --method tsdf: space before a measurement is outside, whatever others measured there");
-  app.add_option("--weights", r.weights,
-                 "Of --method tsdf, what pixels are weighted by: some of "
-                 "confidence,noise,incidence,silhouette, or none")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"confidence", "noise", "incidence", "silhouette", "none"}));
-  app.add_option("--min-weight", t.least_weight,
-                 "Of --method tsdf: voxels with this weight or less are unknown")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--close-gaps", t.close_gaps, "Of --method tsdf: voxels that holes and rims are filled by")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  app.add_option("--trim-rim", t.trim_rim,
-                 "Of --method tsdf: cut off frays narrower than twice so many triangles")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-}
-
-void addOutputOptions(CLI::App& app, Request& r) {
-  app.add_option("--save-grids", r.grids,
-                 "Also write rho, sigma, support and the signed field as OpenVDB grids");
-  app.add_option("--json", r.json, "Write what was done as one JSON object");
-  addMemoryOption(app, r.reconstruct.memory);
-  app.add_option("--threads", r.threads, "Number of threads; 0: all processors")
-      ->check(CLI::NonNegativeNumber);
-  app.add_flag("--overwrite", r.overwrite, "Replace existing output files");
-  app.add_flag("--quiet", r.quiet, "Print errors only");
-}
-
-std::optional<double> parseThickness(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  if (text == "off") return 0;
-  const double value = parseNumber(text).value_or(-1);
-  if (!(value > 0))
-    throw InvalidArgument("--thickness", "expected 'auto', 'off' or a positive length, found '" + text + "'");
-  return value;
-}
-
-void resolveTsdf(const Request& r, TsdfMethod& tsdf) {
-  if (r.truncation == "outliers") {
-    tsdf.otherwise = TsdfMethod::Truncation::FromOutliers;
-  } else if (r.truncation != "auto") {
-    tsdf.truncation = parseNumber(r.truncation).value_or(-1);
-    if (!(tsdf.truncation > 0))
-      throw InvalidArgument("--truncation",
-                            "expected 'auto', 'outliers' or a positive length, found '" + r.truncation + "'");
-  }
-  if (!r.volume.empty()) tsdf.start = std::make_shared<TsdfVolume>(TsdfVolume::read(r.volume));
-  if (r.carve) tsdf.carving = TsdfMethod::Carving::On;
-  if (r.weights.empty()) return;
-  const auto has = [&](const char* name) {
-    return std::find(r.weights.begin(), r.weights.end(), name) != r.weights.end();
-  };
-  tsdf.weights = {has("confidence"), has("noise"), has("incidence"), has("silhouette")};
-}
-
-void requireNew(const fs::path& path, const Request& request) {
+void requireNew(const fs::path& path, const FuseRequest& request) {
   if (path.empty()) return;
   if (!request.overwrite) refuseExisting(path);
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -180,20 +35,8 @@ void requireNew(const fs::path& path, const Request& request) {
   const AtomicFile can_be_written(path);  // never committed: leaves nothing
 }
 
-void resolve(Request& r) {
-  ReconstructOptions& o = r.reconstruct;
-  resolve(r.sensor, o);
-  if (r.border != "auto") {
-    o.border = r.border == "outside" ? Border::Outside : r.border == "solid" ? Border::Solid : Border::Free;
-  }
-  o.thickness = parseThickness(r.thickness);
-  resolveTsdf(r, o.tsdf);
-  if (o.tsdf.start) o.voxel = o.tsdf.start->frame().voxel, o.method = Method::Tsdf;
-  if (!r.grids.empty()) o.grids = ReconstructOptions::Grids::Keep;
-}
-
-void writeOutputs(const Request& request, const Reconstruction& result, const FuseContext& context) {
-  std::vector<Output> outputs;
+void writeOutputs(const FuseRequest& request, const Reconstruction& result, const FuseContext& context,
+                  std::vector<Output> outputs) {
   if (!request.grids.empty()) {
     outputs.push_back({request.grids, [&](const fs::path& path) {
                          std::vector<const ScalarGrid*> grids;
@@ -201,15 +44,56 @@ void writeOutputs(const Request& request, const Reconstruction& result, const Fu
                          writeGrids(path, grids);
                        }});
   }
-  if (!request.json.empty()) {
-    outputs.push_back({request.json, [&](const fs::path& path) { writeFuseJson(path, result, context); }});
+  if (isFile(request.json)) {
+    outputs.push_back(
+        {request.json, [&](const fs::path& path) { writeJson(path, fuseJson(result, context)); }});
   }
   outputs.push_back({request.output, [&](const fs::path& path) { writeMesh(path, result.mesh); }});
   writeTogether(outputs);
 }
 
-JudgedScan judged(const DepthSet& set, Request& request, const Progress& progress) {
+// Millions of pixels, as the plan loads them.
+double megapixels(const ViewSequence& views, const ScanPlan& plan) {
+  double pixels = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Projection& p = views.header(i).projection;
+    const int factor = plan.reduction.empty() ? 1 : plan.reduction[i];
+    pixels += 1e-6 * imageWidth(p) * imageHeight(p) / (factor * factor);
+  }
+  return pixels;
+}
+
+// Seconds of each step on the machine and the scans that they were measured on; only their shares count.
+std::vector<StepShare> expectedSteps(const ViewSequence& views, const ScanPlan& plan,
+                                     const FuseRequest& request) {
+  const double pixels = megapixels(views, plan), cells = 1e-6 * plan.cells;
+  std::vector<StepShare> steps = {{"load views", 0.03 * pixels}};
+  if (request.judgement.empty())
+    steps.insert(steps.end(), {{"calibrate noise", 0.04 * pixels},
+                               {"analyse surfaces", 0.13 * pixels},
+                               {"judge pixels", 0.18 * pixels},
+                               {"weigh views", 0.015 * pixels},
+                               {"look for denial", 0.12 * pixels}});
+  if (request.reconstruct.method == Method::Tsdf) {
+    steps.insert(steps.end(), {{"integrate", cells}, {"connect triangles", 0.4 * cells}});
+  } else {
+    steps.insert(steps.end(), {{"allocate grid", 0.2 * cells},
+                               {"count agreement", 1.1 * cells},
+                               {"evidence", 6.2 * cells},
+                               {"minimum cut", 1.3 * cells},
+                               {"place surface", 1.3 * cells},
+                               {"complete surface", 4.6 * cells},
+                               {"refine surface", 1.3 * cells},
+                               {"connect triangles", 0.3 * cells}});
+  }
+  if (request.color == "auto") steps.push_back({"colour", 0.18 * pixels});
+  return steps;
+}
+
+JudgedScan judged(const DepthSet& set, FuseRequest& request, ProgressLine& line) {
+  const Progress& progress = line.progress();
   ScanPlan plan = planReconstruction(set.views, request.reconstruct, progress);
+  line.expect(expectedSteps(set.views, plan, request));
   if (!request.quiet) printPlan(plan, request.reconstruct.method);
   if (request.judgement.empty()) return judgeScan(set.views, request.reconstruct, std::move(plan), progress);
   JudgedScan scan = readJudgement(request.judgement, set.views, std::move(plan), progress);
@@ -220,14 +104,7 @@ JudgedScan judged(const DepthSet& set, Request& request, const Progress& progres
 // Looks at one view: data sets have pictures for all of them, or for none.
 bool hasPictures(const ViewSequence& views) { return !views.load(0).map.color.empty(); }
 
-// No other convention is tried where the views agree well enough.
-ConventionOptions quickCheck() {
-  ConventionOptions options;
-  options.enough = 0.6;
-  return options;
-}
-
-Words wordsOf(const Request& request) { return request.quiet ? Words::Keep : Words::Print; }
+Words wordsOf(const FuseRequest& request) { return request.quiet ? Words::Keep : Words::Print; }
 
 // What is fused. Depth maps are read without their pictures, which colour the mesh at the end.
 struct Input {
@@ -235,10 +112,10 @@ struct Input {
   std::optional<StereoSummary> stereo;  ///< of photographs
 };
 
-Input readInput(Request& request, const Progress& progress) {
+Input readInput(FuseRequest& request, const Progress& progress) {
   if (!takesPhotographs(request.input, request.sensor, request.photographs)) {
     Input input{readScan(request.input, request.sensor, wordsOf(request)), std::nullopt};
-    if (!request.quiet) warnOf(checkConvention(input.set.views, input.set.stored_from_camera, quickCheck()));
+    if (!request.quiet) warnOf(input.set);
     return input;
   }
   MatchedScan scan = matchPhotographs(request.input, request.sensor, request.photographs, request.reconstruct,
@@ -246,20 +123,28 @@ Input readInput(Request& request, const Progress& progress) {
   return {std::move(scan.set), std::move(scan.stereo)};
 }
 
-ViewSequence picturesOf(const Request& request, const Input& input) {
+ViewSequence picturesOf(const FuseRequest& request, const Input& input) {
   if (input.stereo) return input.set.views;
   return readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load).views;
 }
 
-void fuse(Request request) {
-  const ThreadLimit threads(request.threads);
+void requireOutputs(const FuseRequest& request) {
+  if (request.explain) return;
   requireMeshFormat(request.output);
-  for (const fs::path& path : {request.output, request.grids, request.json}) requireNew(path, request);
+  for (const fs::path& path : {request.output, request.grids}) requireNew(path, request);
+  if (isFile(request.json)) requireNew(request.json, request);
+}
+
+void fuse(FuseRequest request, const CLI::App& command, Action& action) {
+  const ThreadLimit threads(request.threads);
+  requireOutputs(request);
   resolve(request);
-  const ProgressLine line(request.quiet);
+  ProgressLine line(request.quiet);
   const Input input = readInput(request, line.progress());
-  Reconstruction result =
-      reconstruct(judged(input.set, request, line.progress()), request.reconstruct, line.progress());
+  JudgedScan scan = judged(input.set, request, line);
+  action.found = foundValues(request, scan, resolveParameters(scan, request.reconstruct), input.set.format);
+  if (request.explain) return;
+  Reconstruction result = reconstruct(std::move(scan), request.reconstruct, line.progress());
   if (request.color == "auto") {
     const ViewSequence pictures = picturesOf(request, input);
     if (hasPictures(pictures)) colorReconstruction(pictures, result, line.progress());
@@ -269,33 +154,34 @@ void fuse(Request request) {
   const FuseContext context{
       request.input,       request.judgement,     input.set.format, input.set.views.size(),
       request.reconstruct, topology(result.mesh), input.stereo};
-  writeOutputs(request, result, context);
-  if (!request.quiet) printFuseReport(result, context, request.output);
+  stopIfInterrupted();
+  writeOutputs(request, result, context, takeConfig(command, action));
+  if (request.json == "-") std::printf("%s\n", jsonText(fuseJson(result, context)).c_str());
+  if (speaks(request)) printFuseReport(result, context, request.output);
 }
 
 }  // namespace
 
 void addFuse(CLI::App& app, Action& action) {
-  CLI::App& sub =
-      *app.add_subcommand("fuse", "Turn depth maps with poses, or photographs with cameras, into a surface");
+  CLI::App& sub = *app.add_subcommand(
+      "fuse",
+      "Turn depth maps with poses, or photographs with cameras, into a surface\n\n"
+      "What the views say of each place, visible or hidden, decides what is solid: a global minimum cut "
+      "gives a "
+      "closed surface. With --method tsdf: signed distances by Curless and Levoy, open where nothing was "
+      "measured.\n\n"
+      "Everything that is not given is found from the data; --explain says what, and why.");
   sub.footer(
-      "Example: vdbfuse fuse scans/ mesh.ply --voxel 0.002\n         vdbfuse fuse photographs/ mesh.ply");
-  auto request = std::make_shared<Request>();
-  sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
-  sub.add_option("OUT", request->output, "Mesh to write: .ply, .obj, .stl or .glb")->required();
-  addGridOptions(sub, *request);
-  const std::vector<CLI::Option*> judged_before =
-      addSensorOptions(sub, request->sensor, request->reconstruct);
-  CLI::Option* judgement = sub.add_option("--judgement", request->judgement,
-                                          "Folder written by vdbfuse judge: use it instead of judging again");
-  for (CLI::Option* option : judged_before) judgement->excludes(option);
-  addEnergyOptions(sub, *request);
-  addTsdfOptions(sub, *request);
-  addPhotographOptions(sub, request->photographs);
-  addOutputOptions(sub, *request);
-  sub.callback([&action, request] {
+      "vdbfuse fuse scan/ mesh.ply --voxel 0.002\n"
+      "vdbfuse fuse photographs/ mesh.glb\n"
+      "vdbfuse fuse scan/ --explain\n"
+      "vdbfuse fuse scan/ mesh.ply --save-config run.toml\n"
+      "vdbfuse fuse --config run.toml --output again.ply");
+  auto request = std::make_shared<FuseRequest>();
+  addFuseOptions(sub, *request);
+  sub.callback([&sub, &action, request] {
     refuse("options", validate(request->photographs.stereo));
-    action = [request] { fuse(*request); };
+    action = [&sub, &action, request] { fuse(*request, sub, action); };
   });
 }
 

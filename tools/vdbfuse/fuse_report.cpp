@@ -3,7 +3,6 @@
 
 #include <cstdio>
 
-#include "json_file.h"
 #include "vdbfuse/base/memory.h"
 #include "vdbfuse/mesh/aspect.h"
 
@@ -120,16 +119,15 @@ Json stepsJson(const std::vector<StepTime>& steps) {
   return list;
 }
 
+}  // namespace
+
 double totalSeconds(const std::vector<StepTime>& steps) {
   double sum = 0;
   for (const StepTime& s : steps) sum += s.seconds;
   return sum;
 }
 
-}  // namespace
-
-void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result,
-                   const FuseContext& context) {
+Json fuseJson(const Reconstruction& result, const FuseContext& context) {
   Json j = jsonOf("fuse");
   j["options"] = optionsJson(result, context);
   j["input"] = {{"path", context.input.string()},
@@ -169,7 +167,7 @@ void writeFuseJson(const std::filesystem::path& path, const Reconstruction& resu
   j["memory"] = {{"budget_bytes", result.memory.budget},
                  {"estimated_bytes", result.memory.estimated},
                  {"view_window_bytes", result.memory.window}};
-  writeJson(path, j);
+  return j;
 }
 
 void printPlan(const ScanPlan& plan, Method method) {

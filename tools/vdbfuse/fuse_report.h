@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "json_file.h"
 #include "stereo_report.h"
 #include "vdbfuse/mesh/topology.h"
 #include "vdbfuse/pipeline/plan.h"
@@ -21,10 +22,11 @@ struct FuseContext {
   std::optional<StereoSummary> stereo;  ///< of photographs
 };
 
-/// One JSON object: version, command, options (resolved), input, calibration, grid, energy, cut, mesh, steps,
+/// One object: version, command, options (resolved), input, calibration, grid, energy, cut, mesh, steps,
 /// memory.
-void writeFuseJson(const std::filesystem::path& path, const Reconstruction& result,
-                   const FuseContext& context);
+Json fuseJson(const Reconstruction& result, const FuseContext& context);
+
+double totalSeconds(const std::vector<StepTime>& steps);
 
 /// What is about to be done and what it will take, on stderr.
 void printPlan(const ScanPlan& plan, Method method);

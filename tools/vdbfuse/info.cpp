@@ -13,7 +13,9 @@
 #include "commands.h"
 #include "json_file.h"
 #include "read_options.h"
+#include "run_options.h"
 #include "vdbfuse/base/errors.h"
+#include "vdbfuse/base/parallel.h"
 #include "vdbfuse/formats/depth_set.h"
 #include "vdbfuse/fusion/conventions.h"
 #include "vdbfuse/sensor/summary.h"
@@ -21,10 +23,8 @@
 namespace vdbfuse::tool {
 namespace {
 
-struct InfoOptions {
+struct InfoOptions : RunArguments {
   std::filesystem::path input;
-  std::filesystem::path json;
-  bool overwrite = false;
   ReadArguments read;
 };
 
@@ -200,12 +200,13 @@ Json jsonOf(const InfoOptions& options, const ImageSet& set, const PhotographsSu
 void runOnPhotographs(const InfoOptions& options) {
   const ImageSet set = readImageSet(options.input, {options.read.format, options.read.masks});
   const PhotographsSummary summary(set.photographs);
-  if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary));
-  print(set, summary);
+  JsonReport(options, jsonOf(options, set, summary)).commit();
+  if (speaks(options)) print(set, summary);
 }
 
 void run(const InfoOptions& options) {
-  if (!options.json.empty() && !options.overwrite) refuseExisting(options.json);
+  const ThreadLimit threads(options.threads);
+  refuseExistingJson(options);
   if (kindOf(options.input, options.read.format) == InputKind::Photographs) {
     runOnPhotographs(options);
     return;
@@ -215,27 +216,28 @@ void run(const InfoOptions& options) {
   if (summary.valid_pixels == 0)
     throw IoError(options.input, "", "depth maps that hold depths", "none valid in any of them");
   const ConventionCheck check = checkConvention(set.views, set.stored_from_camera);
-  if (!options.json.empty()) writeJson(options.json, jsonOf(options, set, summary, check));
-  print(set, summary, check);
-  warnOf(check);
+  JsonReport(options, jsonOf(options, set, summary, check)).commit();
+  if (speaks(options)) print(set, summary, check);
+  if (!options.quiet) warnOf(check);
 }
 
 }  // namespace
 
 void addInfo(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand(
+  CLI::App& sub = *app.add_subcommand(
       "info",
-      "What is in a data set of depth maps, or of photographs with cameras.\n\nExample: vdbfuse info "
-      "scan/\n\n"
-      "Ranges and boxes leave out the 0.2 % at each end, so that a few wild depths do not count.\n"
-      "A few views are compared with each other; where another reading of poses or depths would agree much\n"
-      "better, a warning names it.");
+      "Say what is in a data set of depth maps, or of photographs with cameras\n\n"
+      "Ranges and boxes leave out the 0.2 % at each end, so that a few wild depths do not count. A few views "
+      "are "
+      "compared with each other; where another reading of poses or depths would agree much better, a warning "
+      "names it.");
+  sub.footer("vdbfuse info scan/\nvdbfuse info scan/ --json - --quiet");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("INPUT", options->input, "Data set: a folder or a file")->required();
-  command->add_option("--json", options->json, "Write the same as JSON to this file");
-  command->add_flag("--overwrite", options->overwrite, "Replace an existing output");
-  addReadOptions(*command, options->read);
-  command->callback([&action, options] { action = [options] { run(*options); }; });
+  sub.add_option("INPUT,--input", options->input, "Data set")->type_name("PATH")->required();
+  addReadOptions(sub, options->read);
+  addJsonOption(sub, options->json, "Write the same as JSON");
+  addRunOptions(sub, *options);
+  sub.callback([&action, options] { action = [options] { run(*options); }; });
 }
 
 }  // namespace vdbfuse::tool

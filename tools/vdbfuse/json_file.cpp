@@ -18,10 +18,12 @@ Json jsonOf(const char* command) {
   return json;
 }
 
+std::string jsonText(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
 void writeJson(const std::filesystem::path& path, const Json& json) {
   AtomicFile target(path);
   std::ofstream file(target.temporaryPath(), std::ios::binary);
-  file << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  file << jsonText(json) << '\n';
   file.close();
   if (!file) throw IoError(path, "cannot be written: " + std::generic_category().message(errno));
   target.commit();

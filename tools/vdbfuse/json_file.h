@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace vdbfuse::tool {
 
@@ -11,6 +12,9 @@ using Json = nlohmann::ordered_json;
 
 /// An object that begins with the version of the tool and the name of the subcommand.
 Json jsonOf(const char* command);
+
+/// Two spaces an indent. Numbers that are not finite become null.
+std::string jsonText(const Json& json);
 
 /// Writes the object; the file is complete or absent. Numbers that are not finite become null. Throws
 /// IoError.

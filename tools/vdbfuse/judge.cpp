@@ -11,6 +11,7 @@
 #include "memory_option.h"
 #include "output_folder.h"
 #include "progress_line.h"
+#include "run_options.h"
 #include "sensor_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/memory.h"
@@ -23,12 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Request {
-  fs::path input, output, json;
+struct Request : RunArguments {
+  fs::path input, output;
   SensorArguments sensor;
   ReconstructOptions options;
-  int threads = 0;
-  bool overwrite = false, quiet = false;
 };
 
 // judgement.json, and what differs from run to run.
@@ -44,37 +43,44 @@ Json runJson(const JudgedScan& scan, const JudgementOrigin& origin) {
 void run(Request request) {
   const ThreadLimit threads(request.threads);
   refuseToReplace(request.output, request.input);
-  if (!request.json.empty() && !request.overwrite) refuseExisting(request.json);
+  refuseExistingJson(request);
   OutputFolder folder(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
   resolve(request.sensor, request.options);
   const DepthSet set = readScan(request.input, request.sensor, request.quiet ? Words::Keep : Words::Print);
-  const ProgressLine line(request.quiet);
+  const ProgressLine line(request.quiet, {{"load views", 3},
+                                          {"calibrate noise", 4},
+                                          {"analyse surfaces", 13},
+                                          {"judge pixels", 18},
+                                          {"weigh views", 1.5},
+                                          {"look for denial", 12}});
   const JudgedScan scan = judgeScan(set.views, request.options, line.progress());
   const JudgementOrigin origin{VDBFUSE_VERSION, request.input.string(), set.format};
   writeJudgement(folder.temporaryPath(), scan, origin);
-  if (!request.json.empty()) writeJson(request.json, runJson(scan, origin));
+  JsonReport json(request, runJson(scan, origin));
   folder.commit();
-  if (!request.quiet) std::printf("%s", judgementText(scan).c_str());
+  json.commit();
+  if (speaks(request)) std::printf("%s", judgementText(scan).c_str());
 }
 
 }  // namespace
 
 void addJudge(CLI::App& app, Action& action) {
-  CLI::App& sub = *app.add_subcommand("judge", "How far each pixel of depth maps can be believed");
+  CLI::App& sub = *app.add_subcommand(
+      "judge",
+      "Say how far each pixel of depth maps can be believed\n\n"
+      "Writes a picture a view (white: believed, black: wrong or not measured), judgement.json and "
+      "judgement.txt "
+      "(noise, learned curve of the confidence, weights), and outliers/ for another run.");
   sub.footer(
-      "Writes a picture a view (white: believed, black: wrong or not measured), judgement.json and\n"
-      "judgement.txt (noise, learned curve of the confidence, weights), and outliers/ for another run.\n\n"
-      "Example: vdbfuse judge scan/ judged/ && vdbfuse fuse scan/ mesh.ply --judgement judged/");
+      "vdbfuse judge scan/ judged/\n"
+      "vdbfuse fuse scan/ mesh.ply --judgement judged/");
   auto request = std::make_shared<Request>();
-  sub.add_option("INPUT", request->input, "Data set: a folder or a file")->required();
-  sub.add_option("OUTDIR", request->output, "Folder to write")->required();
+  sub.add_option("INPUT,--input", request->input, "Data set of depth maps")->type_name("PATH")->required();
+  sub.add_option("OUTDIR,--output", request->output, "Folder to write")->type_name("FOLDER")->required();
   addSensorOptions(sub, request->sensor, request->options);
-  sub.add_option("--json", request->json, "Write judgement.json, with times and memory, here as well");
+  addJsonOption(sub, request->json, "Write judgement.json, with times and memory, here as well");
   addMemoryOption(sub, request->options.memory);
-  sub.add_option("--threads", request->threads, "Number of threads; 0: all processors")
-      ->check(CLI::NonNegativeNumber);
-  sub.add_flag("--overwrite", request->overwrite, "Replace existing outputs");
-  sub.add_flag("--quiet", request->quiet, "Print errors only");
+  addRunOptions(sub, *request);
   sub.callback([&action, request] { action = [request] { run(*request); }; });
 }
 

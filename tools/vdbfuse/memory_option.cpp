@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "run_options.h"
+
 namespace vdbfuse::tool {
 namespace {
 
@@ -30,12 +32,13 @@ CLI::Option* addMemoryOption(CLI::App& app, std::size_t& bytes) {
       .add_option_function<std::string>(
           "--memory",
           [&bytes](const std::string& text) { bytes = static_cast<std::size_t>(*parseSize(text)); },
-          "Memory that may be used, e.g. 8GiB; default: 80 % of what is free. Views that do not fit lie in a "
-          "file in $TMPDIR or /var/tmp")
+          "Memory that may be used. Views that do not fit lie in a file in $TMPDIR or /var/tmp")
       ->check([](const std::string& text) {
         return parseSize(text) ? std::string() : "expected a size like 8GiB, found '" + text + "'";
       })
-      ->type_name("SIZE");
+      ->type_name("SIZE")
+      ->option_text("80 % of what is free")
+      ->group(kRunGroup);
 }
 
 }  // namespace vdbfuse::tool

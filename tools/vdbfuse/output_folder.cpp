@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output_folder.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <system_error>
 
+#include "interrupts.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse::tool {
@@ -31,30 +34,36 @@ fs::path withoutTrailingSlash(const fs::path& path) {
 
 OutputFolder::OutputFolder(fs::path target, Existing existing) : target_(withoutTrailingSlash(target)) {
   requireFree(target, existing);
-  temporary_ = target_.parent_path() / ("." + target_.filename().string() + "." + std::to_string(getpid()));
+  temporary_.emplace(target_.parent_path() /
+                     ("." + target_.filename().string() + "." + std::to_string(getpid())));
   std::error_code error;
-  fs::create_directories(temporary_, error);
+  fs::create_directories(temporary_->path(), error);
   if (error) throw IoError(target, "cannot be created: " + error.message());
 }
 
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-}
-
 void OutputFolder::commit() {
+  stopIfInterrupted();
+  // Both exchange their names in one step, so that no moment leaves the target without a complete folder.
+  const char* from = temporary_->path().c_str();
+  const bool exists = fs::exists(target_);
+  const int flags = exists ? RENAME_EXCHANGE : RENAME_NOREPLACE;
+  if (renameat2(AT_FDCWD, from, AT_FDCWD, target_.c_str(), flags) == 0) {
+    if (!exists) temporary_->keep();  // otherwise it is the old folder now, and goes
+    return;
+  }
+  // File systems that cannot exchange.
   std::error_code error;
   fs::remove_all(target_, error);
-  if (!error) fs::rename(temporary_, target_, error);
+  if (!error) fs::rename(temporary_->path(), target_, error);
   if (error) throw IoError(target_, "cannot be replaced: " + error.message());
-  temporary_.clear();
+  temporary_->keep();
 }
 
-void refuseToReplace(const fs::path& output, const fs::path& input) {
+void refuseToReplace(const fs::path& output, const fs::path& input, const char* words) {
   std::error_code ignored;
   const fs::path from = fs::weakly_canonical(input, ignored), to = fs::weakly_canonical(output, ignored);
   const auto [rest, in_input] = std::mismatch(to.begin(), to.end(), from.begin(), from.end());
-  if (rest == to.end()) throw InvalidArgument("OUTDIR", "holds the input");
+  if (rest == to.end()) throw InvalidArgument("OUTDIR", std::string("holds ") + words);
 }
 
 }  // namespace vdbfuse::tool

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "vdbfuse/io/temporary_path.h"
 
 namespace vdbfuse::tool {
 
@@ -14,18 +17,17 @@ class OutputFolder {
  public:
   /// Throws IoError when the target is a file, is not empty and not to be replaced, or cannot be made.
   OutputFolder(std::filesystem::path target, Existing existing);
-  ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-
-  const std::filesystem::path& temporaryPath() const { return temporary_; }
+  const std::filesystem::path& temporaryPath() const { return temporary_->path(); }
+  /// Throws Cancelled when the run was interrupted, IoError when the folder cannot be put in place.
   void commit();
 
  private:
-  std::filesystem::path target_, temporary_;
+  std::filesystem::path target_;
+  std::optional<TemporaryPath> temporary_;
 };
 
-/// Throws InvalidArgument when replacing the folder `output` would remove `input`.
-void refuseToReplace(const std::filesystem::path& output, const std::filesystem::path& input);
+/// Throws InvalidArgument when replacing the folder `output` would remove `input`; `words` say what that is.
+void refuseToReplace(const std::filesystem::path& output, const std::filesystem::path& input,
+                     const char* words = "the input");
 
 }  // namespace vdbfuse::tool

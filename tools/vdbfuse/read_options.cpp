@@ -12,6 +12,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/number_check.h"
+#include "cli/one_of.h"
+
 namespace vdbfuse::tool {
 namespace {
 
@@ -100,6 +103,12 @@ void warnOf(const ConventionCheck& check) {
       nameOf(check.better->convention).c_str());
 }
 
+void warnOf(const DepthSet& set) {
+  ConventionOptions options;
+  options.enough = 0.6;
+  warnOf(checkConvention(set.views, set.stored_from_camera, options));
+}
+
 Json jsonOf(const ReadArguments& arguments) {
   Json json;
   json["format"] = arguments.format.empty() ? Json(nullptr) : Json(arguments.format);
@@ -130,17 +139,28 @@ const char* nameOf(DepthKind kind) {
   return "";
 }
 
-void addReadOptions(CLI::App& command, ReadArguments& options) {
-  const char* group = "Input";
-  command.add_option("--format", options.format, "Format of the input, if looking at it is not enough")
-      ->check(CLI::IsMember(formatNames()))
-      ->group(group);
+namespace {
+
+// Any of the readings whose names are words, joined by commas: no list of choices.
+void addConventionOption(CLI::App& command, ReadArguments& options) {
+  command
+      .add_option("--fix-convention", options.fix_convention,
+                  "Another reading of poses and depths: auto (what the views agree best under), or a list of "
+                  "inverse, transposed, scalar-first, scalar-last, opengl, range, z, depth*FACTOR (see "
+                  "vdbfuse info)")
+      ->check(conventionCheck())
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
+void addDepthOptions(CLI::App& command, ReadArguments& options) {
   command
       .add_option_function<double>(
           "--depth-scale", [&options](double scale) { options.depth_scale = scale; },
           "Stored number times this is a length (disparity: pixels, inverse: 1/length)")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
+      ->check(positiveNumber())
+      ->type_name("NUMBER")
+      ->option_text("what the format says");
   command
       .add_option_function<std::string>(
           "--depth-kind",
@@ -150,50 +170,58 @@ void addReadOptions(CLI::App& command, ReadArguments& options) {
             }
           },
           "What the stored numbers measure")
-      ->check(CLI::IsMember(kindNames()))
-      ->group(group);
+      ->transform(oneOf(kindNames()))
+      ->type_name("WORD")
+      ->option_text("what the format says");
   command
       .add_option_function<double>(
           "--baseline", [&options](double baseline) { options.baseline = baseline; },
           "Distance between the two cameras, for --depth-kind disparity")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
+      ->check(positiveNumber())
+      ->type_name("LENGTH")
+      ->option_text("what the files say");
+  command.add_option("--min-depth", options.min_depth, "Nearer depths are left out")
+      ->check(nonNegativeNumber())
+      ->type_name("LENGTH")
+      ->capture_default_str();
+  command.add_option("--max-depth", options.max_depth, "Further depths are left out")
+      ->check(positiveNumber())
+      ->type_name("LENGTH")
+      ->option_text("none");
+}
+
+}  // namespace
+
+void addReadOptions(CLI::App& command, ReadArguments& options) {
+  command.option_defaults()->group("Input");
+  command.add_option("--format", options.format, "Format of the input")
+      ->transform(oneOf(formatNames()))
+      ->type_name("WORD")
+      ->option_text("what the input looks like");
+  addDepthOptions(command, options);
   command
       .add_option_function<std::vector<double>>(
           "--intrinsics",
           [&options](const std::vector<double>& v) {
             options.intrinsics = {{v[0], v[1], v[2], v[3]}};
           },
-          "fx,fy,cx,cy of the depth camera in pixels, in place of what the data set says or lacks")
+          "Of the depth camera, in place of what the data set says or lacks")
       ->delimiter(',')
       ->expected(4)
-      ->group(group);
+      ->type_name("fx,fy,cx,cy")
+      ->option_text("what the files say");
   command
       .add_option_function<double>(
           "--splat-step", [&options](double degrees) { options.splat_step = degrees * kRadiansPerDegree; },
-          "Degrees between pixels of the depth maps that points without rows and columns are made into; "
-          "default: as the points are spaced")
-      ->check(CLI::Range(1e-4, 20.0))
-      ->group(group);
+          "Between pixels of the depth maps that points without rows and columns are made into")
+      ->check(numberBetween(1e-4, 20.0))
+      ->type_name("DEGREES")
+      ->option_text("as the points are spaced");
+  addConventionOption(command, options);
   command
-      .add_option("--fix-convention", options.fix_convention,
-                  "Another reading of poses and depths: auto (what the views agree best under), or a list of "
-                  "inverse, transposed, scalar-first, scalar-last, opengl, range, z, depth*FACTOR (see "
-                  "vdbfuse info)")
-      ->check(conventionCheck())
-      ->capture_default_str()
-      ->group(group);
-  command
-      .add_option("--masks", options.masks,
-                  "Folder of silhouettes NAME.png, black where the object is not; default: what lies in the "
-                  "data set")
-      ->group(group);
-  command.add_option("--min-depth", options.min_depth, "Nearer depths are left out")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
-  command.add_option("--max-depth", options.max_depth, "Further depths are left out")
-      ->check(CLI::PositiveNumber)
-      ->group(group);
+      .add_option("--masks", options.masks, "Folder of silhouettes NAME.png, black where the object is not")
+      ->type_name("FOLDER")
+      ->option_text("what lies in the data set");
 }
 
 }  // namespace vdbfuse::tool

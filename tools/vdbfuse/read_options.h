@@ -35,6 +35,8 @@ DepthSet readInput(const std::filesystem::path& path, const ReadArguments& argum
 /// Says on stderr that another convention would make the views agree, where there is one: most bad fusions
 /// come from poses or depths that mean something else.
 void warnOf(const ConventionCheck& check);
+/// The same after a quick look: no other convention is tried where the views agree well enough.
+void warnOf(const DepthSet& set);
 
 /// "z", "range", "disparity" or "inverse", as on the command line.
 const char* nameOf(DepthKind kind);

@@ -8,8 +8,12 @@
 #include <filesystem>
 
 #include "arguments.h"
+#include "cli/number_check.h"
+#include "cli/one_of.h"
 #include "commands.h"
+#include "interrupts.h"
 #include "render_slice.h"
+#include "run_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/formats/depth_set.h"
@@ -23,12 +27,11 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-struct Request {
+struct Request : RunArguments {
   fs::path input, output, reference;
   std::string from, size = "800x600", color = "shaded", up = "z", slice, grid;
   std::vector<double> eye, look, range;
-  bool flat = false, cells = false, overwrite = false;
-  int threads = 0;
+  bool flat = false, cells = false;
   int turntable = 0;
   int width = 0, height = 0;  // 0: that of the view of --from
 };
@@ -65,17 +68,6 @@ ViewHeader camera(const Request& request, const TriangleMesh& mesh, const Vector
   return cameraLookingAt(vector(request.eye), target, up, request.width, request.height);
 }
 
-// Distance of each vertex from the surface of `reference`.
-std::vector<float> distances(const TriangleMesh& mesh, const TriangleMesh& reference) {
-  const ClosestPoint surface(reference);
-  std::vector<float> result(mesh.vertices.size());
-  parallelFor(result.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      result[i] = static_cast<float>(surface.query(mesh.vertices[i].cast<double>()).distance);
-  });
-  return result;
-}
-
 RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   RenderOptions options;
   options.up = axisNamed(request.up);
@@ -84,7 +76,7 @@ RenderOptions renderOptions(const Request& request, const TriangleMesh& mesh) {
   if (request.color == "vertex") options.coloring = MeshColoring::Vertex;
   if (request.color == "error") {
     options.coloring = MeshColoring::Values;
-    options.values = distances(mesh, readMesh(request.reference));
+    options.values = vertexDistances(mesh, ClosestPoint(readMesh(request.reference)));
   }
   if (request.flat) options.normals = RenderOptions::Normals::Flat;
   if (!request.range.empty()) options.low = request.range[0], options.high = request.range[1];
@@ -99,79 +91,116 @@ SliceRequest sliceRequest(const Request& request) {
   return slice;
 }
 
+Image<Rgb8> draw(const Request& request) {
+  if (request.input.extension() == ".vdb") return renderSlice(sliceRequest(request));
+  const TriangleMesh mesh = readMesh(request.input);
+  stopIfInterrupted();
+  const RenderOptions options = renderOptions(request, mesh);
+  if (request.turntable == 0) return render(mesh, camera(request, mesh, options.up), options);
+  if (mesh.triangles.empty()) throw IoError(request.input, "", "a mesh", "no triangles");
+  return renderTurntable(mesh, request.turntable, request.width, request.height, options);
+}
+
+Json jsonOf(const Request& request, const Image<Rgb8>& picture) {
+  Json json = tool::jsonOf("render");
+  json["options"] = {{"input", request.input.string()}, {"color", request.color}, {"up", request.up}};
+  json["picture"] = {
+      {"path", request.output.string()}, {"width", picture.width()}, {"height", picture.height()}};
+  return json;
+}
+
 void run(const Request& request) {
   const ThreadLimit limit(request.threads);
   if (fs::exists(request.output) && !request.overwrite)
     throw IoError(request.output, "", "no such file yet (or --overwrite)", "one");
-  if (request.input.extension() == ".vdb") {
-    writePng(request.output, renderSlice(sliceRequest(request)));
-    return;
-  }
-  const TriangleMesh mesh = readMesh(request.input);
-  const RenderOptions options = renderOptions(request, mesh);
-  if (request.turntable > 0) {
-    if (mesh.triangles.empty()) throw IoError(request.input, "", "a mesh", "no triangles");
-    writePng(request.output,
-             renderTurntable(mesh, request.turntable, request.width, request.height, options));
-    return;
-  }
-  writePng(request.output, render(mesh, camera(request, mesh, options.up), options));
+  refuseExistingJson(request);
+  const Image<Rgb8> picture = draw(request);
+  JsonReport json(request, jsonOf(request, picture));
+  stopIfInterrupted();
+  writePng(request.output, picture);
+  json.commit();
+}
+
+void addCameraOptions(CLI::App& app, Request& request) {
+  app.option_defaults()->group("Camera");
+  auto* from = app.add_option("--from", request.from, "From where a view of a data set was taken")
+                   ->type_name("DATASET:VIEW")
+                   ->option_text("none: the mesh fills the picture");
+  auto* eye = app.add_option("--eye", request.eye, "Where the camera stands")
+                  ->delimiter(',')
+                  ->expected(3)
+                  ->type_name("x,y,z")
+                  ->option_text("where the mesh fills the picture")
+                  ->excludes(from);
+  app.add_option("--look", request.look, "What it looks at")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("x,y,z")
+      ->option_text("the middle of the mesh")
+      ->needs(eye);
+  app.add_option(
+         "--turntable", request.turntable,
+         "From so many sides around the axis that points up, in one picture; --size of each; 0: from one")
+      ->check(numberBetween(0, 400))
+      ->type_name("N")
+      ->capture_default_str()
+      ->excludes(from)
+      ->excludes(eye);
+  app.add_option("--up", request.up, "Axis that points up")
+      ->transform(axisCheck())
+      ->type_name("WORD")
+      ->capture_default_str();
+}
+
+void addColorOptions(CLI::App& app, Request& request) {
+  app.option_defaults()->group("Colours");
+  app.add_option(
+         "--color", request.color,
+         "support: agreeing views, orange where invented; vertex: the mesh's own colours; error: distance "
+         "from --reference")
+      ->transform(oneOf({"shaded", "normal", "support", "vertex", "error"}))
+      ->type_name("WORD")
+      ->capture_default_str();
+  app.add_option("--reference", request.reference, "Mesh that --color error measures from")
+      ->type_name("FILE")
+      ->option_text("none");
+  app.add_option("--range", request.range, "Values at the two ends of the colours")
+      ->delimiter(',')
+      ->expected(2)
+      ->type_name("low,high")
+      ->option_text("from the data");
+  app.add_flag("--flat", request.flat, "Show every triangle as it is");
+}
+
+void addSliceOptions(CLI::App& app, Request& request) {
+  app.option_defaults()->group("Slices of .vdb files");
+  app.add_option("--slice", request.slice, "Plane to draw")->type_name("x|y|z=VALUE")->option_text("none");
+  app.add_option("--grid", request.grid, "Grid of the file")->type_name("NAME")->option_text("the first");
+  app.add_flag("--cells", request.cells, "With lines between the cells of all levels");
 }
 
 }  // namespace
 
 void addRender(CLI::App& app, Action& action) {
   auto request = std::make_shared<Request>();
-  CLI::App* command =
-      app.add_subcommand("render",
-                         "Draws a mesh, or a slice through a grid.\n"
-                         "  vdbfuse render mesh.ply picture.png --from scan:0 --color support\n"
-                         "  vdbfuse render grids.vdb slice.png --slice z=0 --grid sigma");
-  command->add_option("mesh", request->input, "mesh to draw, or .vdb file")->required();
-  command->add_option("png", request->output, "picture to write")->required();
-  auto* from = command->add_option("--from", request->from, "from where a view of a data set was taken")
-                   ->type_name("DATASET:VIEW");
-  auto* eye =
-      command->add_option("--eye", request->eye, "where the camera stands (default: it frames the mesh)")
-          ->delimiter(',')
-          ->expected(3)
-          ->type_name("x,y,z")
-          ->excludes(from);
-  command
-      ->add_option("--turntable", request->turntable,
-                   "from so many sides around the axis that points up, in one picture; --size of each")
-      ->check(CLI::Range(1, 400))
-      ->excludes(from)
-      ->excludes(eye);
-  command->add_option("--look", request->look, "what it looks at (default: the middle)")
-      ->delimiter(',')
-      ->expected(3)
-      ->type_name("x,y,z")
-      ->needs(eye);
-  command->add_option("--up", request->up, "axis that points up")->check(axisCheck())->capture_default_str();
-  command
-      ->add_option(
-          "--color", request->color,
-          "support: agreeing views, orange where invented; vertex: the mesh's own colours; error: distance "
-          "from --reference")
-      ->check(CLI::IsMember({"shaded", "normal", "support", "vertex", "error"}))
-      ->capture_default_str();
-  command->add_option("--reference", request->reference, "mesh that --color error measures from");
-  command->add_option("--range", request->range, "values at the two ends of the colours")
-      ->delimiter(',')
-      ->expected(2)
-      ->type_name("low,high");
-  command->add_option("--slice", request->slice, "plane to draw of a .vdb file")->type_name("x|y|z=VALUE");
-  command->add_flag("--cells", request->cells, "with --slice: lines between the cells of all levels");
-  command->add_option("--grid", request->grid, "grid of the .vdb file (default: the first)");
-  command->add_flag("--flat", request->flat, "show every triangle as it is");
+  CLI::App& sub = *app.add_subcommand("render", "Draw a mesh, or a slice through a grid");
+  sub.footer(
+      "vdbfuse render mesh.ply picture.png --from scan/:0 --color support\n"
+      "vdbfuse render mesh.ply all.png --turntable 8\n"
+      "vdbfuse render grids.vdb slice.png --slice z=0 --grid sigma");
+  sub.add_option("MESH,--input", request->input, "Mesh to draw, or .vdb file")->type_name("FILE")->required();
+  sub.add_option("PNG,--output", request->output, "Picture to write")->type_name("FILE")->required();
+  addCameraOptions(sub, *request);
+  addColorOptions(sub, *request);
+  addSliceOptions(sub, *request);
+  sub.option_defaults()->group("Output");
   auto* size =
-      command->add_option("--size", request->size, "of the picture, pixels (with --from: that of the view)")
+      sub.add_option("--size", request->size, "Of the picture; with --from: that of the view, unless given")
           ->type_name("WxH")
           ->capture_default_str();
-  command->add_option("--threads", request->threads, "0: all processors")->capture_default_str();
-  command->add_flag("--overwrite", request->overwrite, "replace an existing picture");
-  command->callback([request, size, &action] {
+  addJsonOption(sub, request->json, "Write what was drawn as one JSON object");
+  addRunOptions(sub, *request);
+  sub.callback([request, size, &action] {
     if (request->color == "error" && request->reference.empty())
       throw CLI::RequiredError("--color error: --reference MESH");
     if (request->from.empty() || size->count() > 0)

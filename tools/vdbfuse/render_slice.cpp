@@ -7,25 +7,9 @@
 
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/report/grid_levels.h"
-#include "vdbfuse/report/slice.h"
-#include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
 namespace {
-
-SlicePlane parsePlane(const std::string& text) {
-  const bool has_axis = text.size() > 2 && text[0] >= 'x' && text[0] <= 'z' && text[1] == '=';
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    if (has_axis) value = std::stod(text.substr(2), &used);
-  } catch (const std::exception&) {
-  }
-  if (!has_axis || used != text.size() - 2) {
-    throw InvalidArgument("--slice", "expected x=VALUE, y=VALUE or z=VALUE, found '" + text + "'");
-  }
-  return {text[0] - 'x', value};
-}
 
 // The grid and its coarser levels, finest first.
 std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
@@ -66,23 +50,45 @@ void drawCells(const Image<float>& numbers, Image<Rgb8>& picture) {
 
 }  // namespace
 
+SlicePlane parsePlane(const std::string& text) {
+  const bool has_axis = text.size() > 2 && text[0] >= 'x' && text[0] <= 'z' && text[1] == '=';
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    if (has_axis) value = std::stod(text.substr(2), &used);
+  } catch (const std::exception&) {
+  }
+  if (!has_axis || used != text.size() - 2) {
+    throw InvalidArgument("--slice", "expected x=VALUE, y=VALUE or z=VALUE, found '" + text + "'");
+  }
+  return {text[0] - 'x', value};
+}
+
+Image<Rgb8> renderSlice(const std::vector<const ScalarGrid*>& grids, const LevelSlice& slice) {
+  const GridLevels levels(grids);
+  const Box box = slice.box.isEmpty() ? levels.box() : slice.box;
+  const auto field = [&](const Eigen::Vector3d& point) { return levels.at(point).value; };
+  const std::string& name = grids.front()->name();
+  SliceOptions options;
+  if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
+  options.low = slice.low, options.high = slice.high;
+  Image<Rgb8> picture = drawSlice(sampleSlice(field, box, slice.plane, slice.longest), options);
+  if (slice.lines == CellLines::Draw) {
+    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(levels.at(point)); };
+    drawCells(sampleSlice(number, box, slice.plane, slice.longest), picture);
+  }
+  return picture;
+}
+
 Image<Rgb8> renderSlice(const SliceRequest& request) {
   const SlicePlane plane = parsePlane(request.plane);
   const std::vector<ScalarGrid> grids = readLevels(request);
-  const std::string& name = grids.front().name();
-  const GridLevels levels(grids, name);
-  const Box box = levels.box();
+  std::vector<const ScalarGrid*> levels;
+  for (const ScalarGrid& grid : grids) levels.push_back(&grid);
+  const Box box = GridLevels(levels).box();
   if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
-  const auto field = [&](const Eigen::Vector3d& point) { return levels.at(point).value; };
-  SliceOptions options;
-  if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
-  options.low = request.low, options.high = request.high;
-  Image<Rgb8> picture = drawSlice(sampleSlice(field, box, plane, request.longest), options);
-  if (request.cells) {
-    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(levels.at(point)); };
-    drawCells(sampleSlice(number, box, plane, request.longest), picture);
-  }
-  return picture;
+  const CellLines lines = request.cells ? CellLines::Draw : CellLines::None;
+  return renderSlice(levels, {plane, box, request.longest, lines, request.low, request.high});
 }
 
 }  // namespace vdbfuse::tool

@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "vdbfuse/geometry/image.h"
+#include "vdbfuse/report/slice.h"
+#include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
 
@@ -16,6 +19,24 @@ struct SliceRequest {
   bool cells = false;          ///< lines between the cells as well
   double low = 0, high = 0;    ///< values at the ends of the colours; equal: from the data
 };
+
+/// x=VALUE, y=VALUE or z=VALUE. Throws InvalidArgument.
+SlicePlane parsePlane(const std::string& text);
+
+enum class CellLines { None, Draw };
+
+/// A picture of grids in memory, finest level first: the finest known value at each point.
+struct LevelSlice {
+  SlicePlane plane;
+  Box box;  ///< empty: around all voxels that hold a value
+  int longest = 800;
+  CellLines lines = CellLines::None;
+  double low = 0, high = 0;  ///< as of SliceRequest
+};
+
+/// Colours by the name of the first grid, as renderSlice() below. REQUIRES: a grid, and one with values or a
+/// box.
+Image<Rgb8> renderSlice(const std::vector<const ScalarGrid*>& levels, const LevelSlice& slice);
 
 /// A slice through a grid and its coarser levels (`name_level1`, …): the finest known value at each point.
 /// rho, support and weight are drawn from dark to light, everything else around zero. Throws IoError,

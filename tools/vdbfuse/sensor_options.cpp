@@ -4,7 +4,8 @@
 #include <cstdio>
 
 #include "arguments.h"
-#include "choice.h"
+#include "cli/number_check.h"
+#include "cli/one_of.h"
 #include "vdbfuse/base/errors.h"
 
 namespace vdbfuse::tool {
@@ -43,31 +44,41 @@ std::optional<double> parseNumber(const std::string& text) {
 std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& arguments,
                                            ReconstructOptions& options) {
   addReadOptions(app, arguments.read);
-  app.add_option("--views", arguments.views, "Use the first N views only")->check(CLI::PositiveNumber);
-  app.add_option("--bbox", arguments.box, "Domain x0,y0,z0,x1,y1,z1; default: where the views agree")
+  app.add_option("--views", arguments.views, "Use the first N views only")
+      ->check(positiveNumber())
+      ->type_name("N")
+      ->option_text("all");
+  app.add_option("--bbox", arguments.box, "Domain: the box that the surface is looked for in")
       ->delimiter(',')
-      ->expected(6);
+      ->expected(6)
+      ->type_name("x0,y0,z0,x1,y1,z1")
+      ->option_text("where the views agree");
+  app.option_defaults()->group("Sensor");
   CLI::Option* sensor =
-      app.add_option("--sensor", arguments.sensor,
-                     "Noise of a known sensor, poses in metres; default: from the overlap of the views")
-          ->check(CLI::IsMember(presetNames()));
+      app.add_option("--sensor", arguments.sensor, "Noise of a known sensor, poses in metres")
+          ->transform(oneOf(presetNames()))
+          ->type_name("WORD")
+          ->option_text("from the overlap of the views");
   return {
       app.add_option("--noise", arguments.noise, "Shape of the noise of depths")
-          ->check(CLI::IsMember(kShapes))
+          ->transform(oneOf(kShapes))
+          ->type_name("WORD")
           ->capture_default_str(),
       sensor,
-      app.add_option("--noise-scale", options.noise_scale,
-                     "Standard deviation at the median depth; default: from the overlap of the views")
-          ->check(CLI::PositiveNumber)
+      app.add_option("--noise-scale", options.noise_scale, "Standard deviation at the median depth")
+          ->check(positiveNumber())
+          ->type_name("LENGTH")
+          ->option_text("from the overlap of the views")
           ->excludes(sensor),
       app.add_option("--outliers", arguments.outliers,
                      "Share of wrong depths, the same for every pixel; auto: judged by pixel")
+          ->type_name("SHARE")
           ->capture_default_str(),
       app.add_flag("--no-reliability", arguments.no_reliability, "Believe every pixel (as --outliers 0.01)"),
       app.add_flag("--no-denial", arguments.no_denial,
                    "Judge pixels without the second pass, leave-one-out denial"),
-      choice(app, "--no-return", options.judge.no_return, kNoReturns,
-             "What a missing depth around an object means")};
+      addChoice(app, "--no-return", options.judge.no_return, kNoReturns,
+                "What a missing depth around an object means")};
 }
 
 void resolve(const SensorArguments& arguments, ReconstructOptions& options) {

@@ -15,10 +15,13 @@
 #include <vector>
 
 #include "arguments.h"
+#include "cli/number_check.h"
+#include "cli/one_of.h"
 #include "commands.h"
 #include "json_file.h"
 #include "output_folder.h"
 #include "progress_line.h"
+#include "run_options.h"
 #include "stereo_arguments.h"
 #include "stereo_preview.h"
 #include "stereo_report.h"
@@ -33,15 +36,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Request {
-  fs::path input, output, json;
+struct Request : RunArguments {
+  fs::path input, output;
   ImageReadOptions read;
   StereoOptions options;
   std::vector<double> box;
   std::string to = "mvsnet";
   std::size_t views = 0;
-  int threads = 0;
-  bool overwrite = false, quiet = false;
 };
 
 // Names that can be names of files: folders become parts of them; numbers where two would be the same.
@@ -137,21 +138,22 @@ void run(Request request) {
   keepFreedMemory();
   const ThreadLimit threads(request.threads);
   refuseToReplace(request.output, request.input);
-  if (!request.json.empty() && !request.overwrite) refuseExisting(request.json);
+  refuseExistingJson(request);
   OutputFolder folder(request.output, request.overwrite ? Existing::Replace : Existing::Refuse);
   request.options.domain = boxOf(request.box);
   const ImageSet set = readPhotographs(request.input, request.read, request.views);
   if (!request.quiet) printNotes(request, set);
-  const ProgressLine line(request.quiet);
+  const ProgressLine line(request.quiet, {{"matching", 2}, {"cross-checking", 5}, {"write", 2}});
   StereoResult result = computeDepthMaps(set.photographs, request.options, line.progress());
   const StereoSummary summary = summarise(result);
   makeFileNames(result.views);
   writeFolder(folder.temporaryPath(), request, result, line.progress());
   const Json json = jsonOf(request, set, summary);
   writeJson(folder.temporaryPath() / "stereo.json", json);
-  if (!request.json.empty()) writeJson(request.json, withTimes(json, summary));
+  JsonReport run_json(request, withTimes(json, summary));
   folder.commit();
-  if (!request.quiet) std::printf("%s", tableOf(summary).c_str());
+  run_json.commit();
+  if (speaks(request)) std::printf("%s", tableOf(summary).c_str());
 }
 
 std::vector<std::string> imageFormatNames() {
@@ -161,53 +163,57 @@ std::vector<std::string> imageFormatNames() {
 }
 
 void addInputOptions(CLI::App& app, Request& request) {
-  const char* group = "Input";
-  app.add_option("--format", request.read.format, "Format of the input, if looking at it is not enough")
-      ->check(CLI::IsMember(imageFormatNames()))
-      ->group(group);
+  app.option_defaults()->group("Input");
+  app.add_option("--format", request.read.format, "Format of the input")
+      ->transform(oneOf(imageFormatNames()))
+      ->type_name("WORD")
+      ->option_text("what the input looks like");
   app.add_option("--masks", request.read.masks,
-                 "Folder of silhouettes NAME.png, black where the object is not; default: what lies in the "
-                 "data set")
-      ->group(group);
+                 "Folder of silhouettes NAME.png, black where the object is not")
+      ->type_name("FOLDER")
+      ->option_text("what lies in the data set");
   app.add_option("--views", request.views, "Use the first N photographs only")
-      ->check(CLI::Range(2, 1 << 30))
-      ->group(group);
-  app.add_option("--bbox", request.box,
-                 "Box x0,y0,z0,x1,y1,z1 in which depths are looked for; default: what the data set says, or "
-                 "where the cameras look")
+      ->check(numberBetween(2, 1 << 30))
+      ->type_name("N")
+      ->option_text("all");
+  app.add_option("--bbox", request.box, "Box in which depths are looked for")
       ->delimiter(',')
       ->expected(6)
-      ->group(group);
+      ->type_name("x0,y0,z0,x1,y1,z1")
+      ->option_text("what the data set says, or where the cameras look");
   app.add_option("--min-depth", request.options.min_depth, "Least depth that is looked for")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
+      ->check(nonNegativeNumber())
+      ->type_name("LENGTH")
+      ->option_text("what the data set says, or from the cameras");
   app.add_option("--max-depth", request.options.max_depth, "Largest depth that is looked for")
-      ->check(CLI::NonNegativeNumber)
-      ->group(group);
+      ->check(nonNegativeNumber())
+      ->type_name("LENGTH")
+      ->option_text("what the data set says, or from the cameras");
 }
 
 }  // namespace
 
 void addStereo(CLI::App& app, Action& action) {
-  CLI::App& sub = *app.add_subcommand("stereo", "Make depth maps with confidences from photographs");
+  CLI::App& sub = *app.add_subcommand(
+      "stereo",
+      "Make depth maps with confidences from photographs\n\n"
+      "Writes depth maps, confidences, cameras and pictures in the layout of MVSNet or COLMAP, a preview a "
+      "photograph (picture, depths, confidences), and stereo.json. vdbfuse fuse takes the photographs, too.");
   sub.footer(
-      "Writes depth maps, confidences, cameras and pictures in the layout of MVSNet or COLMAP, a preview a\n"
-      "photograph (picture, depths, confidences), and stereo.json. vdbfuse fuse takes the photographs, "
-      "too.\n\n"
-      "Example: vdbfuse stereo photographs/ depths/ && vdbfuse fuse depths/ mesh.ply");
+      "vdbfuse stereo photographs/ depths/\n"
+      "vdbfuse fuse depths/ mesh.ply");
   auto request = std::make_shared<Request>();
-  sub.add_option("IMAGES", request->input, "Photographs with cameras: a folder or a file")->required();
-  sub.add_option("OUTDIR", request->output, "Folder to write")->required();
+  sub.add_option("IMAGES,--input", request->input, "Photographs with cameras")->type_name("PATH")->required();
+  sub.add_option("OUTDIR,--output", request->output, "Folder to write")->type_name("FOLDER")->required();
   addInputOptions(sub, *request);
   addStereoOptions(sub, request->options, "Matching");
+  sub.option_defaults()->group("Output");
   sub.add_option("--to", request->to, "Layout of the folder")
-      ->check(CLI::IsMember({"mvsnet", "colmap"}))
+      ->transform(oneOf({"mvsnet", "colmap"}))
+      ->type_name("WORD")
       ->capture_default_str();
-  sub.add_option("--json", request->json, "Write stereo.json, with times and memory, here as well");
-  sub.add_option("--threads", request->threads, "Number of threads; 0: all processors")
-      ->check(CLI::NonNegativeNumber);
-  sub.add_flag("--overwrite", request->overwrite, "Replace existing outputs");
-  sub.add_flag("--quiet", request->quiet, "Print errors only");
+  addJsonOption(sub, request->json, "Write stereo.json, with times and memory, here as well");
+  addRunOptions(sub, *request);
   sub.callback([&action, request] {
     refuse("options", validate(request->options));
     action = [request] { run(*request); };

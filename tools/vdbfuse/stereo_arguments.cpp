@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "choice.h"
+#include "cli/number_check.h"
+#include "cli/one_of.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -15,32 +16,39 @@ const std::map<std::string, StereoOptions::Mode> kModes = {{"fast", StereoOption
 }  // namespace
 
 std::vector<CLI::Option*> addStereoOptions(CLI::App& app, StereoOptions& options, const std::string& group) {
-  const CLI::Range angle(0.0, 180.0);
+  const CLI::Validator angle = numberBetween(0, 180);
   std::vector<CLI::Option*> all = {
-      choice(app, "--mode", options.mode, kModes,
-             "fast: sweeps over a pyramid; paper: section 3.1 of the paper to the letter, slow"),
+      addChoice(app, "--mode", options.mode, kModes,
+                "fast: sweeps over a pyramid; paper: section 3.1 of the paper to the letter, slow"),
       app.add_option("--neighbours", options.partners.count, "Photographs that each is matched with")
-          ->check(CLI::Range(1, 64))
+          ->type_name("N")
+          ->check(numberBetween(1, 64))
           ->capture_default_str(),
       app.add_option("--min-angle", options.partners.min_angle_deg,
-                     "Least angle between the lines of sight of two that are matched, degrees")
+                     "Least angle between the lines of sight of two that are matched")
+          ->type_name("DEGREES")
           ->check(angle)
           ->capture_default_str(),
-      app.add_option("--max-angle", options.partners.max_angle_deg, "Largest angle, degrees")
+      app.add_option("--max-angle", options.partners.max_angle_deg, "Largest angle")
+          ->type_name("DEGREES")
           ->check(angle)
           ->capture_default_str(),
-      app.add_option("--window", options.window_px, "Side of the square that is correlated, pixels; odd")
-          ->check(CLI::Range(3, 15))
+      app.add_option("--window", options.window_px, "Side of the square that is correlated; odd")
+          ->type_name("PIXELS")
+          ->check(numberBetween(3, 15))
           ->capture_default_str(),
       app.add_option("--hypotheses", options.hypotheses, "Depths a pixel may have")
-          ->check(CLI::Range(1, 4))
+          ->type_name("N")
+          ->check(numberBetween(1, 4))
           ->capture_default_str(),
       app.add_option("--min-confidence", options.min_confidence, "Pixels with less have no depth")
-          ->check(CLI::Range(0.0, 1.0))
+          ->type_name("SHARE")
+          ->check(numberBetween(0.0, 1.0))
           ->capture_default_str(),
       app.add_option("--surface-sweeps", options.surface_sweeps,
                      "Of --mode fast: sweeps along the slant of what was found before")
-          ->check(CLI::Range(0, 10))
+          ->type_name("N")
+          ->check(numberBetween(0, 10))
           ->capture_default_str(),
       app.add_flag_callback(
           "--no-cross-check", [&options] { options.cross_check = StereoOptions::CrossCheck::Off; },

@@ -8,8 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "arguments.h"
+#include "cli/nearest.h"
+#include "cli/one_of.h"
 #include "commands.h"
+#include "interrupts.h"
 #include "output_folder.h"
+#include "progress_line.h"
+#include "run_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/base/version.h"
@@ -39,7 +44,7 @@ const std::map<std::string, ConfidenceKind> kConfidences = {{"informative", Conf
                                                             {"none", ConfidenceKind::None}};
 const std::map<std::string, Background> kBackgrounds = {{"none", Background::None},
                                                         {"wall", Background::Wall}};
-struct Request {
+struct Request : RunArguments {
   std::string scene;
   fs::path folder;
   std::string size = "640x480", up = "z";
@@ -48,8 +53,7 @@ struct Request {
   std::optional<ConfidenceKind> confidence;
   PhotographOptions photographs;
   bool textured = false, images_only = false, true_depth = false;
-  bool hard = false, oracle = false, overwrite = false, quiet = false;
-  int threads = 0;
+  bool hard = false, oracle = false;
 };
 
 template <class T>
@@ -71,9 +75,10 @@ Scene loadScene(const Request& request) {
   const std::vector<std::string> names = sceneNames();
   const bool known = std::find(names.begin(), names.end(), request.scene) != names.end();
   if (!known && !fs::exists(request.scene))
-    throw InvalidArgument(
-        "SCENE",
-        "'" + request.scene + "' is neither sphere, box, torus, figure, occluder, ball nor a mesh file");
+    throw InvalidArgument("SCENE",
+                          "'" + request.scene +
+                              "' is neither sphere, box, torus, figure, occluder, ball nor a mesh file" +
+                              didYouMean(request.scene, names));
   Scene scene = known ? makeScene(request.scene)
                       : sceneFromMesh(fs::path(request.scene).stem().string(), readMesh(request.scene));
   scene.up = axisNamed(request.up);
@@ -167,16 +172,21 @@ void writeView(MvsnetWriter& writer, const SyntheticView& view, const fs::path& 
 }
 
 // Renders a few views at a time, so that all threads have work and the memory stays small.
-ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, const Request& request) {
+ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, const Request& request,
+                          const Progress& progress) {
   constexpr std::size_t kBatch = 8;
   if (request.oracle) fs::create_directories(folder / "wrong");
   if (request.true_depth) fs::create_directories(folder / "true_depth");
   MvsnetWriter writer(folder);
   ScanStatistics statistics_sum;
+  ProgressStep step(progress, "views", scan.size());
   for (std::size_t first = 0; first < scan.size(); first += kBatch) {
     std::vector<SyntheticView> views(std::min(kBatch, scan.size() - first));
     parallelFor(views.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) views[i] = scan.render(first + i);
+      for (std::size_t i = begin; i < end; ++i) {
+        stopIfInterrupted();
+        views[i] = scan.render(first + i);
+      }
     });
     for (std::size_t i = 0; i < views.size(); ++i) {
       writeView(writer, views[i], folder, request);
@@ -184,6 +194,7 @@ ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, con
       if (request.images_only)
         writer.add(Photograph{scan.photographHeader(first + i), brightnessOf(color), color, {}});
       statistics_sum += statistics(views[i]);
+      step.advance();
     }
   }
   return statistics_sum;
@@ -192,116 +203,157 @@ ScanStatistics writeViews(const SyntheticScan& scan, const fs::path& folder, con
 void run(const Request& request) {
   const ThreadLimit limit(request.threads);
   const SynthOptions& options = request.options;
+  refuseExistingJson(request);
   OutputFolder output(request.folder, request.overwrite ? Existing::Replace : Existing::Refuse);
   const SyntheticScan scan(loadScene(request), options);
-  const ScanStatistics sum = writeViews(scan, output.temporaryPath(), request);
+  const ProgressLine line(request.quiet, {{"views", 1}});
+  const ScanStatistics sum = writeViews(scan, output.temporaryPath(), request, line.progress());
   writeMesh(output.temporaryPath() / "truth.ply", scan.scene().truth);
-  writeText(output.temporaryPath() / "scene.json", describe(scan, sum).dump(2) + "\n");
+  const ordered_json description = describe(scan, sum);
+  writeText(output.temporaryPath() / "scene.json", description.dump(2) + "\n");
+  JsonReport json(request, description);
   output.commit();
-  if (request.quiet) return;
+  json.commit();
+  if (!speaks(request)) return;
   std::printf("%s: %zu views %dx%d of %s, %.1f %% of the object's pixels wrong\n", request.folder.c_str(),
               scan.size(), options.width, options.height, scan.scene().name.c_str(),
               100 * share(sum.object_wrong, sum.object_measured));
 }
 
-std::string choices(const auto& names) {
-  std::string all;
-  for (const auto& entry : names) all += (all.empty() ? "" : "|") + entry.first;
-  return all;
-}
-
-// An option whose value is one of the names.
-CLI::Option* addChoice(CLI::App& app, const std::string& name, auto& target, const auto& names,
-                       const std::string& help) {
-  const auto choose = [&target, &names](const std::string& text) {
-    const auto found = names.find(text);
-    if (found == names.end())
-      throw CLI::ValidationError("expected " + choices(names) + ", found '" + text + "'");
-    target = found->second;
-  };
-  return app.add_option_function<std::string>(name, choose, help)->type_name(choices(names));
-}
-
 void addSensorOptions(CLI::App& app, Request& request) {
   SynthOptions& o = request.options;
-  addChoice(app, "--noise-law", o.noise_law, kNoiseLaws, "how noise grows with depth")->default_str("stereo");
+  app.option_defaults()->group("Sensor");
+  addChoice(app, "--noise-law", o.noise_law, kNoiseLaws, "How noise grows with depth");
   auto* scale =
-      app.add_option("--noise-scale", o.noise_scale, "standard deviation of the noise at depth 1, 0: exact")
+      app.add_option("--noise-scale", o.noise_scale, "Standard deviation of the noise at depth 1; 0: exact")
+          ->type_name("LENGTH")
           ->capture_default_str();
-  app.add_option("--noise-px", o.noise_px, "the same as a matching error in pixels")->excludes(scale);
-  app.add_option("--baseline", o.baseline, "of the stereo pair that --noise-px speaks of")
+  app.add_option("--noise-px", o.noise_px, "The same as a matching error")
+      ->type_name("PIXELS")
+      ->option_text("none: --noise-scale")
+      ->excludes(scale);
+  app.add_option("--baseline", o.baseline, "Of the stereo pair that --noise-px speaks of")
+      ->type_name("LENGTH")
       ->capture_default_str();
-  app.add_option("--outliers", request.outliers, "share of pixels with a random depth (0; 0.08 with --hard)");
+  app.add_option("--outliers", request.outliers, "Share of pixels with a random depth")
+      ->type_name("SHARE")
+      ->option_text("0; 0.08 with --hard");
   app.add_flag("--hard", request.hard,
-               "mixed silhouettes, whole patches at a wrong depth, overlapping confidences, outliers");
-  app.add_option("--missing", o.missing, "share of pixels without a depth")->capture_default_str();
-  addChoice(app, "--confidence", request.confidence, kConfidences,
-            "what confidences know of wrong pixels (informative; overlapping with --hard)");
-  app.add_option("--quantum", o.quantum, "step of the depths; 0: any depth")->capture_default_str();
-  app.add_option("--focal", o.focal_px, "focal length, pixels (default: the scene fills the image)");
-  addChoice(app, "--background", o.background, kBackgrounds, "what lies behind the object")
-      ->default_str("none");
+               "Mixed silhouettes, whole patches at a wrong depth, overlapping confidences, outliers");
+  app.add_option("--missing", o.missing, "Share of pixels without a depth")
+      ->type_name("SHARE")
+      ->capture_default_str();
+  app.add_option_function<std::string>(
+         "--confidence", [&request](const std::string& name) { request.confidence = kConfidences.at(name); },
+         "What confidences know of wrong pixels")
+      ->transform(oneOf({"informative", "overlapping", "none"}))
+      ->type_name("WORD")
+      ->option_text("informative; overlapping with --hard");
+  app.add_option("--quantum", o.quantum, "Step of the depths; 0: any depth")
+      ->type_name("LENGTH")
+      ->capture_default_str();
+  app.add_option("--focal", o.focal_px, "Focal length")
+      ->type_name("PIXELS")
+      ->option_text("the scene fills the image");
 }
 
 void addPhotographOptions(CLI::App& app, Request& request) {
   PhotographOptions& p = request.photographs;
+  app.option_defaults()->group("Photographs");
   auto* textured = app.add_flag("--textured", request.textured,
-                                "texture and light the scene, and write a picture of each view (images/)");
-  app.add_option("--gain", p.gain, "exposures differ by view, by a factor between 1/X and X")
+                                "Texture and light the scene, and write a picture of each view (images/)");
+  app.add_option("--gain", p.gain, "Exposures differ by view, by a factor between 1/X and X")
+      ->type_name("NUMBER")
       ->needs(textured)
       ->capture_default_str();
-  app.add_option("--bias", p.bias, "of a view's brightness: ±X grey levels")
+  app.add_option("--bias", p.bias, "Of a view's brightness, up or down")
+      ->type_name("GREY-LEVELS")
       ->needs(textured)
       ->capture_default_str();
-  app.add_option("--image-noise", p.noise, "standard deviation in the pictures, grey levels")
+  app.add_option("--image-noise", p.noise, "Standard deviation in the pictures")
+      ->type_name("GREY-LEVELS")
       ->needs(textured)
       ->capture_default_str();
-  app.add_option("--gloss", p.gloss, "brightness of highlights, 0 to 1")
+  app.add_option("--gloss", p.gloss, "Brightness of highlights")
+      ->type_name("SHARE")
       ->needs(textured)
       ->capture_default_str();
-  app.add_flag("--images-only", request.images_only, "cameras and pictures, no depth maps")->needs(textured);
+  app.add_flag("--images-only", request.images_only, "Cameras and pictures, no depth maps")->needs(textured);
+}
+
+std::string text(double value) {
+  char number[32];
+  std::snprintf(number, sizeof number, "%g", value);
+  return number;
+}
+
+// What --preset decides where the command line does not.
+std::vector<FoundValue> presetValues(const SynthOptions& o) {
+  const std::string why = "--preset";
+  return {{"views", std::to_string(o.views), why},
+          {"arc", nameOf(kArcs, o.arc), why},
+          {"noise-law", nameOf(kNoiseLaws, o.noise_law), why},
+          {"noise-scale", text(noiseScale(o)), why},
+          {"quantum", text(o.quantum), why},
+          {"background", nameOf(kBackgrounds, o.background), why},
+          {"focal", text(focalLength(o)), why}};
+}
+
+// Returns --preset.
+CLI::Option* addCameraOptions(CLI::App& app, Request& request) {
+  SynthOptions& o = request.options;
+  app.option_defaults()->group("Scene and cameras");
+  // The first option: those after it overrule the preset.
+  CLI::Option* preset =
+      app.add_option_function<std::string>(
+             "--preset", [&request](const std::string&) { request.options = kinectOptions(); },
+             "kinect: 24 views from above, focal length 525, structured-light noise, depths in millimetres; "
+             "for "
+             "the "
+             "scene ball")
+          ->transform(oneOf({"kinect"}))
+          ->type_name("WORD")
+          ->option_text("none");
+  app.add_option("--views", o.views, "Number of cameras")->type_name("N")->capture_default_str();
+  addChoice(app, "--arc", o.arc, kArcs, "Where they stand");
+  app.add_option("--size", request.size, "Of each depth map")->type_name("WxH")->capture_default_str();
+  app.add_option("--up", request.up, "Axis of the scene that points up")
+      ->transform(axisCheck())
+      ->type_name("WORD")
+      ->capture_default_str();
+  addChoice(app, "--background", o.background, kBackgrounds, "What lies behind the object");
+  app.add_option("--seed", o.seed, "Of the random numbers")->type_name("N")->capture_default_str();
+  return preset;
 }
 
 }  // namespace
 
 void addSynth(CLI::App& app, Action& action) {
   auto request = std::make_shared<Request>();
-  CLI::App* command = app.add_subcommand(
+  CLI::App& sub = *app.add_subcommand(
       "synth",
-      "Makes a scan whose truth is known: depth maps (MVSNet layout), truth.ply, scene.json.\n"
-      "  vdbfuse synth figure scan --arc ring --views 72 --size 320x240 --outliers 0.1");
-  command
-      ->add_option("scene", request->scene,
-                   "sphere, box, torus, figure, occluder, ball, or a closed mesh file")
+      "Make a scan whose truth is known\n\n"
+      "Depth maps in the layout of MVSNet, truth.ply, and scene.json with the regions that vdbfuse evaluate "
+      "looks at. Scenes have a diagonal of 1, cameras stand 1.5 away.");
+  sub.footer(
+      "vdbfuse synth figure scan/ --arc ring --views 72 --size 320x240 --outliers 0.1\n"
+      "vdbfuse synth figure photographs/ --arc ring --views 72 --textured --images-only");
+  sub.add_option("SCENE,--scene", request->scene,
+                 "sphere, box, torus, figure, occluder, ball, or a closed mesh file")
+      ->type_name("NAME")
       ->required();
-  command->add_option("outdir", request->folder, "folder to write")->required();
-  // The first option: those after it overrule the preset.
-  command
-      ->add_option_function<std::string>(
-          "--preset", [request](const std::string&) { request->options = kinectOptions(); },
-          "kinect: 24 views from above, focal length 525, structured-light noise, depths in millimetres; for "
-          "the scene ball")
-      ->check(CLI::IsMember({"kinect"}));
-  SynthOptions& o = request->options;
-  command->add_option("--views", o.views, "number of cameras")->capture_default_str();
-  addChoice(*command, "--arc", o.arc, kArcs, "where they stand")->default_str("full");
-  command->add_option("--size", request->size, "of each depth map, pixels")
-      ->type_name("WxH")
-      ->capture_default_str();
-  command->add_option("--up", request->up, "axis of the scene that points up")
-      ->check(axisCheck())
-      ->capture_default_str();
-  addSensorOptions(*command, *request);
-  addPhotographOptions(*command, *request);
-  command->add_option("--seed", o.seed, "of the random numbers")->capture_default_str();
-  command->add_flag("--oracle", request->oracle,
-                    "also write wrong/*.png: 0 right, 1 mixed, 2 patch, 3 outlier");
-  command->add_flag("--true-depth", request->true_depth, "also write true_depth/*.pfm: 0 nothing to see");
-  command->add_option("--threads", request->threads, "0: all processors")->capture_default_str();
-  command->add_flag("--overwrite", request->overwrite, "replace a folder that is not empty");
-  command->add_flag("--quiet", request->quiet, "print nothing");
-  command->callback([request, &action] {
+  sub.add_option("OUTDIR,--output", request->folder, "Folder to write")->type_name("FOLDER")->required();
+  const CLI::Option* preset = addCameraOptions(sub, *request);
+  addSensorOptions(sub, *request);
+  addPhotographOptions(sub, *request);
+  sub.option_defaults()->group("Output");
+  sub.add_flag("--oracle", request->oracle, "Also write wrong/*.png: 0 right, 1 mixed, 2 patch, 3 outlier");
+  sub.add_flag("--true-depth", request->true_depth, "Also write true_depth/*.pfm: 0 nothing to see");
+  addJsonOption(sub, request->json, "Write scene.json here as well");
+  addRunOptions(sub, *request);
+  sub.callback([request, preset, &action] {
     request->options = resolved(*request);
+    if (preset->count() > 0) action.found = presetValues(request->options);
     action = [request] { run(*request); };
   });
 }

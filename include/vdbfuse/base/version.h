@@ -14,7 +14,7 @@
 /// users, so that it is major.minor.
 #define VDBFUSE_SOVERSION "0.1"
 
-/// For #if: whether these headers are of that version or of a later one.
+/// In preprocessor conditions: whether these headers are of that version or of a later one.
 #define VDBFUSE_VERSION_AT_LEAST(major, minor, patch)                                        \
   (VDBFUSE_VERSION_MAJOR * 1000000 + VDBFUSE_VERSION_MINOR * 1000 + VDBFUSE_VERSION_PATCH >= \
    (major)*1000000 + (minor)*1000 + (patch))

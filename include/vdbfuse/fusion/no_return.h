@@ -7,7 +7,9 @@ namespace vdbfuse {
 
 /// Where a sensor looked past everything: invalid pixels that survive a 9×9 opening and are joined to the
 /// image's border. Isolated misses are chance, and a dark patch inside an object is missed by every view.
-Image<std::uint8_t> emptyRegions(const Image<float>& depth);
+/// `outlier`: ε of each pixel, or empty. Depths that are probably wrong (ε > ¾) do not interrupt a region as
+/// long as they are not the greater part of any of its squares: a matcher imagines some before empty space.
+Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& outlier = {});
 
 /// Share of the image's border pixels that lie in `mask`.
 double borderShare(const Image<std::uint8_t>& mask);

@@ -3,7 +3,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <vector>
+
+#include "vdbfuse/io/temporary_path.h"
 
 namespace vdbfuse {
 
@@ -15,18 +18,13 @@ class AtomicFile {
  public:
   /// Creates the empty temporary. IoError when the target is a folder, a device, or cannot be written.
   explicit AtomicFile(std::filesystem::path target);
-  ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
-
-  const std::filesystem::path& temporaryPath() const { return temporary_; }
+  const std::filesystem::path& temporaryPath() const { return temporary_->path(); }
   /// Renames the temporary to the target. Throws IoError; the temporary is then removed by the destructor.
   void commit();
 
  private:
   std::filesystem::path target_;
-  std::filesystem::path temporary_;
-  bool committed_ = false;
+  std::unique_ptr<TemporaryPath> temporary_;
 };
 
 /// A file to write and how: `write` gets the path of a temporary with the same extension.

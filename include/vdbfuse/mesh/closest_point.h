@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "vdbfuse/mesh/triangle_mesh.h"
 
@@ -35,6 +36,9 @@ class ClosestPoint {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Distance of each vertex from the surface, a float each.
+std::vector<float> vertexDistances(const TriangleMesh& mesh, const ClosestPoint& surface);
 
 /// The point of the triangle a b c that is nearest to `point`; triangles without area are segments or points.
 Eigen::Vector3d closestPointOnTriangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a,

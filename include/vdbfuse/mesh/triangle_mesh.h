@@ -34,6 +34,9 @@ Box boundingBox(const TriangleMesh& mesh);
 /// Sum of the areas of all triangles.
 double area(const TriangleMesh& mesh);
 
+/// A third of the area of the triangles around each vertex, a vertex each.
+std::vector<double> vertexAreas(const TriangleMesh& mesh);
+
 /// Volume enclosed by a closed mesh; negative when it is inside out.
 double signedVolume(const TriangleMesh& mesh);
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vdbfuse/geometry/box.h"
@@ -17,6 +18,8 @@ class GridLevels {
  public:
   /// Refers to `grids`, which must outlive it. Throws InvalidArgument when none has that name.
   GridLevels(const std::vector<ScalarGrid>& grids, const std::string& name);
+  /// These, the finest first.
+  explicit GridLevels(std::vector<const ScalarGrid*> levels) : levels_(std::move(levels)) {}
 
   /// What a point lies in: the finest voxel with a value; not a number where there is none.
   struct Cell {

@@ -12,6 +12,9 @@ struct SimplifyOptions {
   std::size_t triangles = 0;
   /// Largest distance from the mesh, its unit. 0: any.
   double tolerance = 0;
+  /// MayChange is for looking at: the number of triangles is reached wherever it can be, and thin parts may
+  /// grow together or vanish.
+  enum class Topology { Keep, MayChange } topology = Topology::Keep;
 };
 
 struct SimplifyReport {
@@ -22,7 +25,8 @@ struct SimplifyReport {
 /// Fewer triangles where the surface is flat (edges collapse in the order of their quadric error; Garland and
 /// Heckbert 1997, as meshoptimizer does it). Vertices stay where they are and keep their attributes. A mesh
 /// that is closed and manifold stays so, with the same components and handles: where the library would break
-/// that, more triangles are left. Throws InvalidArgument when neither a number nor a tolerance is given.
+/// that, more triangles are left (Topology::Keep). Throws InvalidArgument when neither a number nor a
+/// tolerance is given.
 SimplifyReport simplify(const SimplifyOptions& options, TriangleMesh& mesh);
 
 }  // namespace vdbfuse
