@@ -75,9 +75,10 @@ void run(const Arguments& arguments) {
   const TriangleMesh truth = readMesh(arguments.truth), mesh = readMesh(arguments.mesh);
   if (truth.triangles.empty()) throw IoError(arguments.truth, "", "a mesh with triangles", "none");
   const Evaluation evaluation = evaluate(mesh, truth, arguments.options, regions);
+  JsonReport json(arguments, toJson(arguments, evaluation));
   stopIfInterrupted();
   if (speaks(arguments)) print(evaluation);
-  JsonReport(arguments, toJson(arguments, evaluation)).commit();
+  json.commit();
 }
 
 }  // namespace

@@ -17,10 +17,15 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-// The parser adds what its checks say of themselves behind a colon.
+// The parser adds what its checks say of themselves behind a colon, which a kind may have in its own name.
 std::string kindOf(const CLI::Option& option) {
   const std::string all = option.get_type_name();
-  return all.substr(0, all.find(':'));
+  std::string kind = all.substr(0, all.find(':'));
+  for (const ValueKind& known : valueKinds()) {
+    const std::string name = known.name;
+    if (name.size() > kind.size() && (all + ":").starts_with(name + ":")) kind = name;
+  }
+  return kind;
 }
 
 ArgumentInfo infoOf(const CLI::Option& option) {
