@@ -73,6 +73,9 @@ if(TARGET vdbfuse_python)
           "Takes depth maps as arrays of numpy, views from generators and data sets on
 disk, and gives meshes as arrays." AFTER runtime DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR})"
           "python3 (<< 3.${next_python})" python3-numpy SUGGESTS python3-matplotlib)
+  # Compiled when installed, so that what Python makes of it goes with it.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/python/postinst
+                                                ${PROJECT_SOURCE_DIR}/cmake/debian/python/prerm)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/python/
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/python3-vdbfuse/examples COMPONENT python FILES_MATCHING PATTERN "*.py"
           PATTERN "README.md")
