@@ -2,7 +2,7 @@
 # cmake --install: libraries, public headers, the tool, a CMake package, so that find_package(vdbfuse CONFIG) gives
 # vdbfuse::vdbfuse and, where it was built, vdbfuse::pcl, and vdbfuse.pc for pkg-config. Nothing in them knows where it
 # lies: the folder may be moved as a whole.
-# Components: runtime, development, tool, pcl, pcl_development; each is a Debian package (Packages.cmake). What names none
+# Components: runtime, development, tool, pcl, pcl_development, python; each is a Debian package (Packages.cmake). What names none
 # belongs to the tool.
 include(CMakePackageConfigHelpers)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME tool)
@@ -44,6 +44,19 @@ if(TARGET vdbfuse_tool)
           RENAME vdbfuse COMPONENT tool)
   install(FILES ${PROJECT_BINARY_DIR}/share/_vdbfuse DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
           COMPONENT tool)
+endif()
+
+if(TARGET vdbfuse_python)
+  # Where Debian's python3 looks: /usr/lib/python3 is for packages, /usr/local/lib/python3.11 for everybody.
+  set(python_version "")
+  if(NOT VDBFUSE_PACKAGES)
+    set(python_version .${Python3_VERSION_MINOR})
+  endif()
+  set(python_dir lib/python3${python_version}/dist-packages/vdbfuse)
+  vdbfuse_install_rpath(vdbfuse_python ${python_dir})
+  get_target_property(python_files vdbfuse_python VDBFUSE_FILES)
+  install(TARGETS vdbfuse_python LIBRARY DESTINATION ${python_dir} COMPONENT python)
+  install(FILES ${python_files} DESTINATION ${python_dir} COMPONENT python)
 endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/vdbfuseConfig.cmake.in ${PROJECT_BINARY_DIR}/vdbfuseConfig.cmake

@@ -21,7 +21,8 @@ set(VDBFUSE_LAYERS
     4:surface     # field, mesh extraction
     4:report      # pictures, slices, pages
     5:pipeline    # the whole line in one function; the live Scanner
-    6:capi)       # the library for C
+    6:capi        # the library for C
+    6:python)     # the Python package, a library of its own
 
 # Sets OUT to the floor of MODULE; stops if the module is not in the table.
 function(vdbfuse_floor MODULE OUT)
@@ -44,12 +45,13 @@ function(vdbfuse_check_layer USER USED)
   endif()
 endfunction()
 
-# Sets OUT to whether MODULE is to be built: all are, unless VDBFUSE_MODULES names some; PCL's can be left out.
+# Sets OUT to whether MODULE is to be built: all are, unless VDBFUSE_MODULES names some; those of PCL and
+# of Python can be left out.
 function(vdbfuse_is_wanted MODULE OUT)
   set(wanted TRUE)
   if(VDBFUSE_MODULES AND NOT MODULE IN_LIST VDBFUSE_MODULES)
     set(wanted FALSE)
-  elseif(MODULE STREQUAL "pcl" AND NOT VDBFUSE_WITH_PCL)
+  elseif((MODULE STREQUAL "pcl" AND NOT VDBFUSE_WITH_PCL) OR (MODULE STREQUAL "python" AND NOT VDBFUSE_WITH_PYTHON))
     set(wanted FALSE)
   endif()
   set(${OUT} ${wanted} PARENT_SCOPE)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages of what Install.cmake installs, one a component, by: cmake --workflow --preset package
-# They lie in build-package/: libvdbfuse, libvdbfuse-dev, vdbfuse, and, with PCL, libvdbfuse-pcl and libvdbfuse-pcl-dev.
+# They lie in build-package/: libvdbfuse, libvdbfuse-dev, vdbfuse, and, with PCL, libvdbfuse-pcl and libvdbfuse-pcl-dev,
+# with Python, python3-vdbfuse.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "vdbfuse maintainers <maintainers@vdbfuse.invalid>" CACHE STRING "Maintainer of the packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -65,6 +66,19 @@ if(TARGET vdbfuse_pcl)
   package(pcl_development libvdbfuse-pcl-dev libdevel "bridge to PCL, for development"
           "Converts clouds and polygon meshes of the Point Cloud Library." AFTER development pcl DEPENDS libpcl-dev
           pkg-config)
+endif()
+if(TARGET vdbfuse_python)
+  math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
+  package(python python3-vdbfuse python "for Python 3"
+          "Takes depth maps as arrays of numpy, views from generators and data sets on
+disk, and gives meshes as arrays." AFTER runtime DEPENDS "python3 (>= 3.${Python3_VERSION_MINOR})"
+          "python3 (<< 3.${next_python})" python3-numpy SUGGESTS python3-matplotlib)
+  # Compiled when installed, so that what Python makes of it goes with it.
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/python/postinst
+                                                ${PROJECT_SOURCE_DIR}/cmake/debian/python/prerm)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/python/
+          DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/python3-vdbfuse/examples COMPONENT python FILES_MATCHING PATTERN "*.py"
+          PATTERN "README.md")
 endif()
 
 # Manual pages are compressed in a package.

@@ -9,6 +9,7 @@
 #                           interrupts, full disks, the Debian packages in a clean system, the first steps of README.md in a
 #                           clean clone
 #   VDBFUSE_WITH_PCL=OFF    (environment) without the Point Cloud Library and its 2.6 GB
+#   VDBFUSE_WITH_PYTHON=OFF (environment) without the Python package
 #   VDBFUSE_FUZZ_SECONDS=N  (environment) that the fuzzer has for each reader; 30
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -19,6 +20,7 @@ case "${1:-}" in
   *) echo "usage: tests/run.sh [--all]" >&2; exit 2 ;;
 esac
 with_pcl=${VDBFUSE_WITH_PCL:-ON}
+with_python=${VDBFUSE_WITH_PYTHON:-ON}
 jobs=$(nproc)
 fuzz_seconds=${VDBFUSE_FUZZ_SECONDS:-30}
 results=()
@@ -73,10 +75,11 @@ build() {
 step "Packages"
 scopes=(build test)
 [ "$with_pcl" = OFF ] || scopes+=(pcl)
+[ "$with_python" = OFF ] || scopes+=(python)
 [ "$all" = no ] || scopes+=(all)
 cmake/install-packages.sh "${scopes[@]}"
 
-build "Release" build release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
+build "Release" build release -DVDBFUSE_WITH_PYTHON="$with_python" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 cmake --build build -j "$jobs"
 if [ "$all" = no ]; then
   run_tests release build -LE slow
@@ -102,7 +105,7 @@ else
   build "Sanitizers on everything" build-asan asan -DVDBFUSE_MODULES=
   cmake --build build-asan -j "$jobs"
   run_tests sanitizers build-asan -LE 'style|consumer'
-  build "clang++" build-clang release -DCMAKE_CXX_COMPILER=clang++
+  build "clang++" build-clang release -DVDBFUSE_WITH_PYTHON="$with_python" -DCMAKE_CXX_COMPILER=clang++
   cmake --build build-clang -j "$jobs"
   run_tests clang++ build-clang -LE 'style|consumer'
   build "Without PCL, static" build-static release -DVDBFUSE_WITH_PCL=OFF -DBUILD_SHARED_LIBS=OFF

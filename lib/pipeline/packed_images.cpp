@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/packed_images.h"
 
+#include <algorithm>
 #include <bit>
 #include <optional>
+#include <vector>
 
 #include "vdbfuse/sensor/view_windows.h"
 
@@ -12,14 +14,15 @@ namespace {
 // Numbers different depths in the order in which they come: a hash table of open addresses.
 class Numbering {
  public:
-  static constexpr std::size_t kMost = 1 << 16;
+  /// `most`: depths that may be numbered, up to 65536.
+  explicit Numbering(std::size_t most) : most_(std::min<std::size_t>(most, 1 << 16)) {}
 
-  /// Nothing once there are more than kMost.
+  /// Nothing once there are more.
   std::optional<std::uint16_t> numberOf(float depth) {
     const auto bits = std::bit_cast<std::uint32_t>(depth);
     for (std::size_t slot = (bits * kMultiplier) >> (32 - kBits);; slot = (slot + 1) & (kSlots - 1)) {
       if (numbers_[slot] == kFree) {
-        if (depths_.size() == kMost) return std::nullopt;
+        if (depths_.size() == most_) return std::nullopt;
         numbers_[slot] = static_cast<std::uint32_t>(depths_.size());
         depths_.push_back(depth);
         return static_cast<std::uint16_t>(numbers_[slot]);
@@ -28,31 +31,35 @@ class Numbering {
         return static_cast<std::uint16_t>(numbers_[slot]);
     }
   }
-  std::vector<float> takeDepths() { return std::move(depths_); }
+  const std::vector<float>& depths() const { return depths_; }
 
  private:
   static constexpr int kBits = 18;
   static constexpr std::size_t kSlots = std::size_t{1} << kBits;
   static constexpr std::uint32_t kMultiplier = 2654435769u;  // 2³²/golden ratio
   static constexpr std::uint32_t kFree = 0xffffffff;
+  std::size_t most_;
   std::vector<std::uint32_t> numbers_ = std::vector<std::uint32_t>(kSlots, kFree);
   std::vector<float> depths_;
 };
 
-// Without codes where there are too many depths.
+// Empty where there are too many depths for it to be worth it.
 struct Coded {
   Image<std::uint16_t> codes;
-  std::vector<float> table;
+  Image<float> table;
 };
 Coded encode(const Image<float>& depth, std::pmr::memory_resource* memory) {
-  Numbering numbering;
+  Numbering numbering(depth.size() / 2);
   Image<std::uint16_t> codes(depth.width(), depth.height(), 0, memory);
   for (std::size_t p = 0; p < depth.size(); ++p) {
     const auto number = numbering.numberOf(depth.data()[p]);
     if (!number) return {};
     codes.data()[p] = *number;
   }
-  return {std::move(codes), numbering.takeDepths()};
+  const std::vector<float>& depths = numbering.depths();
+  Image<float> table(static_cast<int>(depths.size()), 1, 0.0f, memory);
+  std::copy(depths.begin(), depths.end(), table.begin());
+  return {std::move(codes), std::move(table)};
 }
 
 // Calls function(image) for each image of a map.
@@ -75,7 +82,7 @@ PackedImages::PackedImages(const DepthMap& map, std::shared_ptr<std::pmr::memory
   rest_.mask = Image(map.mask, place);
   for (const DepthAlternative& other : map.alternatives)
     rest_.alternatives.push_back({Image(other.depth, place), Image(other.share, place)});
-  letGo(codes_);
+  letGo(codes_), letGo(table_);
   forEachImage(rest_, [](const auto& image) { letGo(image); });
 }
 
@@ -84,8 +91,8 @@ DepthMap PackedImages::unpack() const {
   forEachImage(rest_, [](const auto& image) { letGo(image); });
   if (table_.empty()) return map;
   map.depth = Image<float>(codes_.width(), codes_.height());
-  for (std::size_t p = 0; p < codes_.size(); ++p) map.depth.data()[p] = table_[codes_.data()[p]];
-  letGo(codes_);
+  for (std::size_t p = 0; p < codes_.size(); ++p) map.depth.data()[p] = table_.data()[codes_.data()[p]];
+  letGo(codes_), letGo(table_);
   return map;
 }
 

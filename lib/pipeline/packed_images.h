@@ -3,14 +3,13 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "vdbfuse/sensor/view.h"
 
 namespace vdbfuse {
 
 /// Sensors measure in steps: few different depths, though many pixels. Where there are at most 65536 of them,
-/// a pixel is the number of its depth in a table.
+/// and half as many as pixels, a pixel is the number of its depth in a table.
 class PackedImages {
  public:
   /// A copy of the images that lies in `memory`, which is kept alive. In ScratchMemory the pixels are let go
@@ -23,7 +22,7 @@ class PackedImages {
 
  private:
   std::shared_ptr<std::pmr::memory_resource> memory_;  ///< outlives the images
-  std::vector<float> table_;                           ///< empty: rest_ has the depths as they were
+  Image<float> table_;                                 ///< one row; empty: rest_ has the depths as they were
   Image<std::uint16_t> codes_;
   DepthMap rest_;
 };

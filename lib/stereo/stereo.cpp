@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdbfuse/stereo/stereo.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -140,6 +141,16 @@ StereoResult paperStereo(const PhotographSequence& photographs, const StereoOpti
 }
 
 }  // namespace
+
+std::optional<NoiseLaw> medianNoise(const StereoResult& result) {
+  std::vector<double> quadratic;
+  for (const StereoView& view : result.views)
+    if (view.noise.quadratic > 0) quadratic.push_back(view.noise.quadratic);
+  if (quadratic.empty()) return std::nullopt;
+  const auto middle = quadratic.begin() + static_cast<std::ptrdiff_t>(quadratic.size() / 2);
+  std::nth_element(quadratic.begin(), middle, quadratic.end());
+  return NoiseLaw{0, 0, *middle};
+}
 
 StereoResult computeDepthMaps(const PhotographSequence& photographs, const StereoOptions& options,
                               const Progress& progress) {

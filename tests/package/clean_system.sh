@@ -21,7 +21,7 @@ cmake --preset package -DVDBFUSE_WERROR=ON -DVDBFUSE_WITH_PCL="${VDBFUSE_WITH_PC
   cmake --build --preset package -j "$(nproc)" >>build-package.log 2>&1 &&
   cpack --preset package >>build-package.log 2>&1 || { tail -n 30 build-package.log; fail "they cannot be built"; }
 rm build-package.log
-for package in libvdbfuse libvdbfuse-dev vdbfuse; do
+for package in libvdbfuse libvdbfuse-dev vdbfuse python3-vdbfuse; do
   [ -f build-package/${package}_*.deb ] || fail "there is no $package"
 done
 (cd build-package && du -h ./*.deb)
@@ -47,6 +47,14 @@ in_root sh -ec '
   if vdbfuse info missing; then exit 1; fi
 ' || fail "the tool does not run"
 cp "$root/work/mesh.png" build-package/
+
+step "The Python package"
+install_in_root "$(package python3-vdbfuse)"
+in_root sh -ec '
+  cd /work
+  python3 -c "import vdbfuse; vdbfuse.fuse(\"scan\", resolution=64).save(\"python.ply\")"
+  cmp mesh.ply python.ply
+' || fail "the Python package does not make the mesh of the tool"
 
 step "The library, by CMake and by pkg-config"
 install_in_root "$(package libvdbfuse-dev)" g++ cmake make pkg-config
@@ -77,7 +85,7 @@ fi
 
 step "Nothing is left"
 in_root sh -ec '
-  apt-get -qq -o Dpkg::Use-Pty=0 purge --yes "vdbfuse" "libvdbfuse*" >/dev/null
+  apt-get -qq -o Dpkg::Use-Pty=0 purge --yes "vdbfuse" "libvdbfuse*" "python3-vdbfuse" >/dev/null
   find / -xdev -iname "*vdbfuse*" -not -path "/work/*" -not -path "/packages/*" >/work/left
   dpkg-query -W -f "\${Package} \${db:Status-Status}\n" | grep -i vdbfuse >>/work/left || true
   ldconfig -p | grep -i vdbfuse >>/work/left || true

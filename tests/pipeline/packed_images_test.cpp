@@ -57,6 +57,14 @@ TEST(PackedImages, TakeTwoBytesForADepthOfASensorThatMeasuresInSteps) {
   EXPECT_EQ(PackedImages(none, kPlain).bytes(), 320u * 240 * 4);
 }
 
+TEST(PackedImages, TakeNoMoreThanTheDepthsWhereATableWouldNotPay) {
+  DepthMap map;
+  map.depth = Image<float>(100, 100);
+  for (std::size_t p = 0; p < map.depth.size(); ++p) map.depth.data()[p] = 1.0f + static_cast<float>(p);
+  EXPECT_EQ(PackedImages(map, kPlain).bytes(), 100u * 100 * 4);
+  EXPECT_EQ(PackedImages(map, kPlain).unpack().depth, map.depth);
+}
+
 TEST(PackedImages, TellNumbersApartThatAreEqualButNotTheSame) {
   DepthMap map;
   map.depth = Image<float>(2, 1);

@@ -270,6 +270,16 @@ TEST(Stereo, WhatStopsALoaderOrTheCallerStopsIt) {
   }
 }
 
+TEST(Stereo, OneLawOfNoiseForAllIsTheMedianOfThoseThatHaveOne) {
+  StereoResult result;
+  EXPECT_FALSE(medianNoise(result));
+  result.views.resize(4);
+  EXPECT_FALSE(medianNoise(result));
+  result.views[0].noise.quadratic = 0.3, result.views[1].noise.quadratic = 0.1;
+  result.views[3].noise.quadratic = 0.2;
+  EXPECT_EQ(medianNoise(result), (NoiseLaw{0, 0, 0.2}));
+}
+
 TEST(StereoOptions, ListEverythingThatIsWrongWithThem) {
   StereoOptions options;
   EXPECT_TRUE(validate(options).empty());

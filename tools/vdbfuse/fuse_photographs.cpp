@@ -77,7 +77,7 @@ MatchedScan matchPhotographs(const std::filesystem::path& input, const SensorArg
       computeDepthMaps(images.photographs, resolved(arguments.stereo, sensor.read, options.domain), progress);
   StereoSummary summary = summarise(result);
   if (words == Words::Print) std::fprintf(stderr, "%s", tableOf(summary).c_str());
-  if (!options.noise && options.noise_scale == 0) options.noise = medianNoise(summary);
+  if (!options.noise && options.noise_scale == 0) options.noise = medianNoise(result);
   options.window_px = arguments.stereo.window_px;
   return {depthSetOf(std::move(result), std::move(images)), std::move(summary)};
 }

@@ -2,18 +2,14 @@
 #include "render_slice.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/volume/leaf_index.h"
+#include "vdbfuse/report/grid_levels.h"
 
 namespace vdbfuse::tool {
 namespace {
-
-using Levels = std::vector<const ScalarGrid*>;  // finest first
 
 // The grid and its coarser levels, finest first.
 std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
@@ -30,48 +26,8 @@ std::vector<ScalarGrid> readLevels(const SliceRequest& request) {
   return levels;
 }
 
-bool isKnown(const ScalarGrid& grid, float value) { return !std::isnan(value) && value != grid.background(); }
-
-// Box around all voxels that hold a value.
-Box boxOf(const Levels& levels) {
-  Box box;
-  for (const ScalarGrid* level : levels) {
-    const ScalarGrid& grid = *level;
-    for (std::size_t i = 0; i < grid.leafCount(); ++i) {
-      const ScalarGrid::Leaf leaf = grid.leaf(i);
-      for (int k = 0; k < ScalarGrid::kLeafSize; ++k) {
-        if (!isKnown(grid, leaf.values[static_cast<std::size_t>(k)])) continue;
-        const Eigen::Vector3d voxel = (leaf.origin + leafOffset(k)).cast<double>();
-        box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() - 0.5)));
-        box.extend(grid.frame().toWorld(Eigen::Vector3d(voxel.array() + 0.5)));
-      }
-    }
-  }
-  return box;
-}
-
-// What a point of the slice lies in.
-struct Cell {
-  std::size_t level = 0;
-  Index3 voxel = Index3::Zero();
-  float value = std::numeric_limits<float>::quiet_NaN();
-};
-
-Cell finestKnown(const Levels& levels, const Eigen::Vector3d& point) {
-  Cell cell;
-  for (; cell.level < levels.size(); ++cell.level) {
-    const ScalarGrid& grid = *levels[cell.level];
-    cell.voxel = (grid.frame().toIndex(point).array() + 0.5).floor().cast<int>();
-    const float value = grid.at(cell.voxel);
-    if (!isKnown(grid, value)) continue;
-    cell.value = value;
-    break;
-  }
-  return cell;
-}
-
 // A number for each cell, so that neighbours have different ones, exact in a float.
-double numberOf(const Cell& cell) {
+double numberOf(const GridLevels::Cell& cell) {
   std::uint64_t number = cell.level;
   for (int a = 0; a < 3; ++a)
     number = number * 0x9e3779b97f4a7c15ULL + static_cast<std::uint32_t>(cell.voxel[a]);
@@ -108,16 +64,17 @@ SlicePlane parsePlane(const std::string& text) {
   return {text[0] - 'x', value};
 }
 
-Image<Rgb8> renderSlice(const Levels& levels, const LevelSlice& slice) {
-  const Box box = slice.box.isEmpty() ? boxOf(levels) : slice.box;
-  const auto field = [&](const Eigen::Vector3d& point) { return finestKnown(levels, point).value; };
-  const std::string& name = levels.front()->name();
+Image<Rgb8> renderSlice(const std::vector<const ScalarGrid*>& grids, const LevelSlice& slice) {
+  const GridLevels levels(grids);
+  const Box box = slice.box.isEmpty() ? levels.box() : slice.box;
+  const auto field = [&](const Eigen::Vector3d& point) { return levels.at(point).value; };
+  const std::string& name = grids.front()->name();
   SliceOptions options;
   if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
   options.low = slice.low, options.high = slice.high;
   Image<Rgb8> picture = drawSlice(sampleSlice(field, box, slice.plane, slice.longest), options);
   if (slice.lines == CellLines::Draw) {
-    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(finestKnown(levels, point)); };
+    const auto number = [&](const Eigen::Vector3d& point) { return numberOf(levels.at(point)); };
     drawCells(sampleSlice(number, box, slice.plane, slice.longest), picture);
   }
   return picture;
@@ -126,9 +83,9 @@ Image<Rgb8> renderSlice(const Levels& levels, const LevelSlice& slice) {
 Image<Rgb8> renderSlice(const SliceRequest& request) {
   const SlicePlane plane = parsePlane(request.plane);
   const std::vector<ScalarGrid> grids = readLevels(request);
-  Levels levels;
+  std::vector<const ScalarGrid*> levels;
   for (const ScalarGrid& grid : grids) levels.push_back(&grid);
-  const Box box = boxOf(levels);
+  const Box box = GridLevels(levels).box();
   if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
   const CellLines lines = request.cells ? CellLines::Draw : CellLines::None;
   return renderSlice(levels, {plane, box, request.longest, lines, request.low, request.high});

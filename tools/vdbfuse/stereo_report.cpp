@@ -49,16 +49,6 @@ StereoSummary summarise(const StereoResult& result) {
   return summary;
 }
 
-std::optional<NoiseLaw> medianNoise(const StereoSummary& summary) {
-  std::vector<double> quadratic;
-  for (const StereoSummary::Row& row : summary.rows)
-    if (row.noise.quadratic > 0) quadratic.push_back(row.noise.quadratic);
-  if (quadratic.empty()) return std::nullopt;
-  const auto middle = quadratic.begin() + static_cast<std::ptrdiff_t>(quadratic.size() / 2);
-  std::nth_element(quadratic.begin(), middle, quadratic.end());
-  return NoiseLaw{0, 0, *middle};
-}
-
 Json jsonOf(const StereoSummary& summary) {
   Json list = Json::array();
   for (const StereoSummary::Row& row : summary.rows)

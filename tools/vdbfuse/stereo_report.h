@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,6 @@ struct StereoSummary {
 };
 
 StereoSummary summarise(const StereoResult& result);
-
-/// The median of the quadratic coefficients of the views that have one; nothing when none has.
-std::optional<NoiseLaw> medianNoise(const StereoSummary& summary);
 
 /// An array of objects: name, partners, near, far, matching_error_px, noise_quadratic, pixels,
 /// pixels_with_depth, mean_confidence.

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vdbfuse/base/progress.h"
@@ -36,6 +37,10 @@ struct StereoResult {
   std::vector<StereoView> views;  ///< in the order of the photographs
   std::vector<StepTime> steps;
 };
+
+/// One law for all views: the median of the quadratic coefficients of those that have one; nothing when none
+/// has.
+std::optional<NoiseLaw> medianNoise(const StereoResult& result);
 
 /// Throws InvalidArgument for unusable options or fewer than two photographs, IoError from their loader,
 /// Cancelled. The same bytes for any number of threads.
