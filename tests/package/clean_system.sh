@@ -31,14 +31,14 @@ fi
 
 step "A clean Debian 12"
 make_root build-package/clean
-mkdir "$root/packages" "$root/work"
+mkdir "$root/packages" "$root/check"
 cp build-package/*.deb "$root/packages/"
-cp -r tests/consumer/project "$root/work/consumer"
+cp -r tests/consumer/project "$root/check/consumer"
 
 step "The tool"
 install_in_root "$(package vdbfuse)" "$(package libvdbfuse)"
 in_root sh -ec '
-  cd /work
+  cd /check
   vdbfuse --version
   vdbfuse synth figure scan --arc ring --views 36 --size 160x120 --outliers 0.1 --quiet
   vdbfuse fuse scan mesh.ply --resolution 64 --quiet
@@ -46,12 +46,12 @@ in_root sh -ec '
   vdbfuse render mesh.ply mesh.png
   if vdbfuse info missing; then exit 1; fi
 ' || fail "the tool does not run"
-cp "$root/work/mesh.png" build-package/
+cp "$root/check/mesh.png" build-package/
 
 step "The Python package"
 install_in_root "$(package python3-vdbfuse)"
 in_root sh -ec '
-  cd /work
+  cd /check
   python3 -c "import vdbfuse; vdbfuse.fuse(\"scan\", resolution=64).save(\"python.ply\")"
   cmp mesh.ply python.ply
 ' || fail "the Python package does not make the mesh of the tool"
@@ -59,7 +59,7 @@ in_root sh -ec '
 step "The library, by CMake and by pkg-config"
 install_in_root "$(package libvdbfuse-dev)" g++ cmake make pkg-config
 in_root sh -ec '
-  cd /work
+  cd /check
   cmake -S consumer -B by-cmake >/dev/null
   cmake --build by-cmake >/dev/null
   by-cmake/consumer
@@ -79,17 +79,17 @@ if [ "$with_pcl" = yes ]; then
     for y in -0.15 -0.05 0.05 0.15; do
       for x in -0.2 -0.1 0 0.1 0.2; do echo "$x $y 1"; done
     done
-  } >"$root/work/cloud.pcd"
-  in_root vdbfuse info /work/cloud.pcd || fail "PCD files are not read"
+  } >"$root/check/cloud.pcd"
+  in_root vdbfuse info /check/cloud.pcd || fail "PCD files are not read"
 fi
 
 step "Nothing is left"
 in_root sh -ec '
   apt-get -qq -o Dpkg::Use-Pty=0 purge --yes "vdbfuse" "libvdbfuse*" "python3-vdbfuse" >/dev/null
-  find / -xdev -iname "*vdbfuse*" -not -path "/work/*" -not -path "/packages/*" >/work/left
-  dpkg-query -W -f "\${Package} \${db:Status-Status}\n" | grep -i vdbfuse >>/work/left || true
-  ldconfig -p | grep -i vdbfuse >>/work/left || true
+  find / -xdev -iname "*vdbfuse*" -not -path "/check/*" -not -path "/packages/*" >/check/left
+  dpkg-query -W -f "\${Package} \${db:Status-Status}\n" | grep -i vdbfuse >>/check/left || true
+  ldconfig -p | grep -i vdbfuse >>/check/left || true
 '
-[ ! -s "$root/work/left" ] || { cat "$root/work/left"; fail "purge leaves these"; }
+[ ! -s "$root/check/left" ] || { cat "$root/check/left"; fail "purge leaves these"; }
 rm -rf "$root"
 step "Done"
