@@ -81,7 +81,11 @@ cmake/install-packages.sh "${scopes[@]}"
 
 build "Release" build release -DVDBFUSE_WITH_PYTHON="$with_python" -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 cmake --build build -j "$jobs"
-run_tests release build
+if [ "$all" = no ]; then
+  run_tests release build -LE slow
+else
+  run_tests release build
+fi
 
 if [ "$all" = no ]; then
   # What does arithmetic of indices, and what reads files of others.

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 
@@ -75,6 +76,29 @@ TEST(Integrator, AnotherThreadMayAskForMeshesAllTheWhile) {
   viewer.join();
   for (const View& view : views) alone.integrate(view);
   expectTheSame(integrator.mesh(), alone.mesh());
+}
+
+TEST(Integrator, ChangedBlocksAreThePartsOfTheMesh) {
+  IntegratorOptions with_colors = options();
+  with_colors.tsdf.colors = TsdfColors::Keep;
+  Integrator integrator(with_colors);
+  for (View& view : test::sphereViews(10)) {
+    view.map.color = Image<Rgb8>(64, 64, {10, 200, 30});
+    integrator.integrate(view);
+  }
+  const TriangleMesh mesh = integrator.mesh();
+  std::size_t triangles = 0;
+  float most = 0;
+  for (const SurfaceBlock& block : integrator.changedBlocks()) {
+    triangles += block.mesh.triangles.size();
+    ASSERT_EQ(block.mesh.support.size(), block.mesh.vertices.size());
+    for (const float support : block.mesh.support) most = std::max(most, support);
+    for (const Rgb8& color : block.mesh.colors) ASSERT_NEAR(color[1], 200, 2);
+    EXPECT_EQ(block.mesh.colors.size(), block.mesh.vertices.size());
+  }
+  EXPECT_EQ(triangles, mesh.triangles.size());
+  EXPECT_EQ(most, *std::max_element(mesh.support.begin(), mesh.support.end()));
+  EXPECT_TRUE(integrator.changedBlocks().empty());
 }
 
 TEST(Integrator, GoesOnWithAVolumeThatWasWritten) {

@@ -86,10 +86,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         inputs = pathlib.Path(folder) / "inputs"
         inputs.mkdir()
-        tool_runs.make_inputs(tool, inputs, True)
+        tool_runs.make_inputs(tool, inputs)
         disk = Disk(pathlib.Path(folder) / "disk")
         try:
-            for run in tool_runs.runs(inputs, True):
+            for run in tool_runs.runs(inputs):
                 all_bytes, largest = written_by(tool, run, folder)
                 for share in SHARES[1:2] if quick else SHARES:
                     size = int(share * (all_bytes if disk.is_mounted else largest))

@@ -13,24 +13,24 @@ class Run:
         self.name, self.arguments, self.outputs = name, arguments, outputs
 
 
-def make_inputs(tool, folder, quick):
+def make_inputs(tool, folder):
     """Scans, photographs, a mesh and grids in `folder`."""
-    size, views = ("320x240", "12") if quick else ("640x480", "36")
+    size = "320x240"
 
     def call(*arguments):
         subprocess.run([tool, *arguments, "--quiet"], cwd=folder, check=True)
 
-    call("synth", "figure", "scan", "--arc", "ring", "--views", views, "--size", size, "--outliers", "0.05",
+    call("synth", "figure", "scan", "--arc", "ring", "--views", "12", "--size", size, "--outliers", "0.05",
          "--textured")
-    call("synth", "figure", "photographs", "--arc", "ring", "--views", "8" if quick else "16", "--size", size,
+    call("synth", "figure", "photographs", "--arc", "ring", "--views", "8", "--size", size,
          "--textured", "--images-only")
-    call("fuse", "scan", "mesh.ply", "--resolution", "128" if quick else "384", "--save-grids", "grids.vdb")
+    call("fuse", "scan", "mesh.ply", "--resolution", "128", "--save-grids", "grids.vdb")
 
 
-def runs(inputs, quick):
+def runs(inputs):
     scan, photographs = str(inputs / "scan"), str(inputs / "photographs")
     mesh, grids = str(inputs / "mesh.ply"), str(inputs / "grids.vdb")
-    resolution, views = ("96", "16") if quick else ("320", "150")
+    resolution = "96"
     return [
         Run("fuse", ["fuse", scan, "out.ply", "--resolution", resolution, "--save-grids", "out.vdb", "--json",
                      "out.json", "--save-config", "out.toml"], ["out.ply", "out.vdb", "out.json", "out.toml"]),
@@ -42,10 +42,12 @@ def runs(inputs, quick):
         Run("stereo", ["stereo", photographs, "out", "--json", "out.json"], ["out", "out.json"]),
         Run("judge", ["judge", scan, "out", "--json", "out.json"], ["out", "out.json"]),
         Run("convert", ["convert", scan, "out", "--to", "rgbd"], ["out"]),
-        Run("synth", ["synth", "figure", "out", "--views", views], ["out"]),
+        Run("synth", ["synth", "figure", "out", "--views", "16"], ["out"]),
         Run("evaluate", ["evaluate", mesh, scan + "/truth.ply", "--deep", "0.01", "--json", "out.json"],
             ["out.json"]),
-        Run("render", ["render", mesh, "out.png", "--turntable", "16" if quick else "64"], ["out.png"]),
+        Run("compare", ["compare", scan, "out", "--reference", scan + "/truth.ply", "--resolution", resolution, "--json",
+                        "out.json"], ["out", "out.json"]),
+        Run("render", ["render", mesh, "out.png", "--turntable", "16"], ["out.png"]),
         Run("render slice", ["render", grids, "out.png", "--slice", "z=0", "--cells", "--size", "2000x2000"],
             ["out.png"]),
         Run("info", ["info", scan, "--json", "out.json"], ["out.json"]),

@@ -170,13 +170,13 @@ typedef struct vdbfuse_fuse_options {
   int32_t resolution;    ///< longest side of the domain / voxel
   double voxel;          ///< or its size; half of it costs about four times as much
   double domain_min[3];  ///< world box; all six numbers 0: from the data
-  double domain_max[3];  //
-  const char* sensor;    ///< kinect, kinect2, realsense-d435, …: its noise, poses in metres
-  double noise_scale;    ///< standard deviation of a depth
-  double outliers;       ///< share of wrong pixels; negative (default): judged pixel by pixel
-  double thickness;   ///< of solid behind a measured surface; negative (default): from the data, 0: no limit
-  double truncation;  ///< of the TSDF
-  double trim;        ///< cut away what fewer views than this agree on; 0: nothing
+  double domain_max[3];
+  const char* sensor;  ///< kinect, kinect2, realsense-d435, …: its noise, poses in metres
+  double noise_scale;  ///< standard deviation of a depth
+  double outliers;     ///< share of wrong pixels; negative (default): judged pixel by pixel
+  double thickness;    ///< of solid behind a measured surface; negative (default): from the data, 0: no limit
+  double truncation;   ///< of the TSDF
+  double trim;         ///< cut away what fewer views than this agree on; 0: nothing
   double min_component;   ///< least diagonal of a component; 0: keep all
   uint64_t simplify;      ///< triangles to be left, about; 0: all
   uint64_t memory_bytes;  ///< that may be used; 0: 80 % of what is free

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_pictures.h"
+#include "compare/pictures.h"
 
-#include "compare_cameras.h"
+#include "compare/cameras.h"
 #include "vdbfuse/io/png.h"
 #include "vdbfuse/report/render.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compare_measures.h"
+#include "compare/measures.h"
 #include "vdbfuse/report/viewer.h"
 
 namespace vdbfuse::tool {

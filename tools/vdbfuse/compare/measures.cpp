@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_measures.h"
+#include "compare/measures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "compare_page.h"
+#include "compare/page.h"
 #include "evaluation_json.h"
 
 namespace vdbfuse::tool {

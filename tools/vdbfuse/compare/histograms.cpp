@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare_pictures.h"
+#include "compare/pictures.h"
 #include "vdbfuse/report/histogram.h"
 
 namespace vdbfuse::tool {

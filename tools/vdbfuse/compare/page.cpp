@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_page.h"
+#include "compare/page.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 
-#include "evaluation_json.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/version.h"
-#include "vdbfuse/io/glb.h"
 #include "vdbfuse/report/html.h"
 #include "vdbfuse/report/page.h"
-#include "vdbfuse/surface/simplify.h"
 
 namespace vdbfuse::tool {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSupportName = "_SUPPORT";
-constexpr const char* kDistanceName = "_DISTANCE";
 constexpr double kSupported = 0.5;  // views; as render() colours it
 
 std::string bytesOf(const fs::path& path) {
@@ -34,10 +28,6 @@ std::vector<std::string> namesOf(const CompareRun& run) {
   std::vector<std::string> names;
   for (const MethodRecord& method : run.methods) names.push_back(method.name);
   return names;
-}
-
-std::string axisText(const SlicePlane& plane) {
-  return std::string(1, static_cast<char>('x' + plane.axis)) + " = " + lengthText(plane.value);
 }
 
 PictureRow rowOf(const fs::path& folder, const std::string& caption, const std::vector<PictureFile>& files,
@@ -116,7 +106,7 @@ Section slices(const fs::path& folder, const CompareRun& run) {
             weight, colorBar("little", "much")),
       rowOf(folder, "Cells of the octree, coloured by σ: fine where measurements agree, coarse elsewhere.",
             cells, key)};
-  return {"slices", "Slices", "The plane " + axisText(run.plane) + " through what each method decided by.",
+  return {"slices", "Slices", "The plane " + planeText(run.plane) + " through what each method decided by.",
           pictureGrid(namesOf(run), rows)};
 }
 
@@ -133,9 +123,9 @@ Section viewer(const MeasuredMeshes& measured, const ComparePictures& drawn,
   std::vector<ViewerMesh> meshes;
   for (const EmbeddedMesh& each : embedded) meshes.push_back(each.viewer);
   const std::vector<ViewerColoring> colorings = {
-      {"Support", kSupportName, measured.largest_support, kSupported, "few views",
+      {"Support", kSupportAttribute, measured.largest_support, kSupported, "few views",
        lengthText(measured.largest_support) + " views or more; orange: less than half a view"},
-      {"Distance", kDistanceName, measured.largest_distance, 0, "0",
+      {"Distance", kDistanceAttribute, measured.largest_distance, 0, "0",
        lengthText(measured.largest_distance) + " or more from " + measured.measured_from},
       {"Photographs", "color", 1, 0, "", ""}};
   return {"viewer", "Viewer",
@@ -184,64 +174,7 @@ std::string titleOf(const CompareRequest& request) {
   return input.filename().string() + ": " + title;
 }
 
-EmbeddedMesh embed(const ShownMesh& shown, std::size_t triangles) {
-  TriangleMesh mesh = shown.mesh;
-  // The place of the confidence, which follows from the support, carries distances through simplify().
-  mesh.confidence = shown.distances;
-  const std::size_t all = mesh.triangles.size();
-  if (all > triangles) {
-    simplify({triangles, 0, SimplifyOptions::Topology::MayChange}, mesh);
-    mesh.normals = vertexNormals(mesh);
-  }
-  std::vector<VertexValues> more;
-  if (!mesh.confidence.empty()) more.push_back({kDistanceName, std::move(mesh.confidence)});
-  mesh.confidence.clear();
-  const std::size_t left = mesh.triangles.size();
-  const std::string words = left == all ? std::to_string(all) + " triangles"
-                                        : std::to_string(left) + " of " + std::to_string(all) + " triangles";
-  return {{shown.name, glbBytes(mesh, more), words}, left, all};
-}
-
 }  // namespace
-
-std::vector<EmbeddedMesh> embedMeshes(const MeasuredMeshes& measured, std::size_t triangles,
-                                      const Progress& progress) {
-  ProgressStep step(progress, "simplify", measured.meshes.size());
-  std::vector<EmbeddedMesh> embedded;
-  for (const ShownMesh& shown : measured.meshes) {
-    embedded.push_back(embed(shown, triangles));
-    step.advance();
-  }
-  return embedded;
-}
-
-Json compareJson(const CompareRequest& request, const CompareRun& run,
-                 const std::vector<EmbeddedMesh>& embedded) {
-  Json json = jsonOf("compare");
-  json["input"] = {{"path", request.input.string()},
-                   {"views", run.views},
-                   {"width", run.width},
-                   {"height", run.height},
-                   {"format", run.format}};
-  json["reference"] = request.reference.empty() ? Json() : Json(request.reference.string());
-  json["voxel"] = run.voxel;
-  json["slice"] = axisText(run.plane);
-  json["memory_restarted"] = run.methods.front().measured == PeakMemory::Restarted;
-  json["methods"] = Json::array();
-  for (std::size_t k = 0; k < run.methods.size(); ++k) {
-    const MethodRecord& m = run.methods[k];
-    Json method = {{"name", m.name}, {"mesh_file", m.mesh.generic_string()}};
-    method.update(m.fuse);
-    for (const char* common : {"version", "command", "input"}) method.erase(common);
-    method["seconds"] = m.seconds, method["shared_seconds"] = m.shared_seconds;
-    method["own_peak_memory_bytes"] = m.own_peak_memory;
-    method["mean_support"] = m.mean_support;
-    method["evaluation"] = m.evaluation ? evaluationJson(*m.evaluation) : Json();
-    method["viewer_triangles"] = embedded[k].triangles;
-    json["methods"].push_back(std::move(method));
-  }
-  return json;
-}
 
 std::string comparePage(const CompareRequest& request, const fs::path& folder, const CompareRun& run,
                         const MeasuredMeshes& measured, const ComparePictures& drawn,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_cameras.h"
+#include "compare/cameras.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

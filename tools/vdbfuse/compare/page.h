@@ -5,11 +5,18 @@
 #include <cstddef>
 #include <string>
 
-#include "compare_methods.h"
-#include "compare_pictures.h"
+#include "compare/methods.h"
+#include "compare/pictures.h"
 #include "vdbfuse/report/page.h"
 
 namespace vdbfuse::tool {
+
+/// Names of the viewer's values in the embedded meshes.
+inline constexpr const char* kSupportAttribute = "_SUPPORT";
+inline constexpr const char* kDistanceAttribute = "_DISTANCE";
+
+/// "y = 0.25"
+std::string planeText(const SlicePlane& plane);
 
 /// A mesh in the page: simplified, with what the viewer colours it by.
 struct EmbeddedMesh {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_slices.h"
+#include "compare/slices.h"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "compare_methods.h"
+#include "compare/methods.h"
 
 #include <algorithm>
 
-#include "compare_slices.h"
+#include "compare/slices.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/mesh_file.h"
 

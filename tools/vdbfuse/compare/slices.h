@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compare_methods.h"
+#include "compare/methods.h"
 #include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
