@@ -43,8 +43,8 @@ class Process:
             status = pathlib.Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
         except OSError:
             return True  # gone already
-        caught = next((int(line.split()[1], 16) for line in status.splitlines() if line.startswith("SigCgt")), ~0)
-        return bool(caught >> (signal.SIGINT - 1) & 1)
+        handled = [int(line.split()[1], 16) for line in status.splitlines() if line.startswith(("SigBlk", "SigCgt"))]
+        return not handled or any(mask >> (signal.SIGINT - 1) & 1 for mask in handled)
 
     def wait(self):
         code = self.process.wait()
