@@ -2,11 +2,13 @@
 #include "compare/measures.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <limits>
 #include <numeric>
+#include <system_error>
 
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/mesh_file.h"
@@ -92,7 +94,7 @@ void writeBytes(const fs::path& path, const std::string& bytes) {
   std::ofstream file(path, std::ios::binary);
   file << bytes;
   file.close();
-  if (!file) throw IoError(path, "cannot be written");
+  if (!file) throw IoError(path, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace vdbfuse::tool
