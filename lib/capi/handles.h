@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -62,6 +63,15 @@ vdbfuse_status guardedHandle(Handle** out, const Make& make) noexcept {
     requireNotNull(out, "out");
     *out = make();
   });
+}
+
+/// The value that a caller's number stands for. Throws InvalidArgument for any other number.
+template <class Enum>
+Enum choice(std::int32_t number, std::initializer_list<Enum> values, const char* argument) {
+  if (number < 0 || static_cast<std::size_t>(number) >= values.size())
+    throw InvalidArgument(argument,
+                          std::to_string(number) + " is none of 0 to " + std::to_string(values.size() - 1));
+  return values.begin()[number];
 }
 
 /// Throws InvalidArgument unless a struct has at least the fields of the first version and none that are not

@@ -23,19 +23,6 @@ vdbfuse_scanner_options defaultScanner() {
   return options;
 }
 
-WhenFull whenFullOf(std::int32_t when_full) {
-  switch (when_full) {
-    case VDBFUSE_DROP_OLDEST:
-      return WhenFull::DropOldest;
-    case VDBFUSE_DROP_NEWEST:
-      return WhenFull::DropNewest;
-    case VDBFUSE_WAIT:
-      return WhenFull::Wait;
-    default:
-      throw InvalidArgument("options.when_full", std::to_string(when_full) + " is none of 0 to 2");
-  }
-}
-
 ScannerOptions scannerOptionsOf(const vdbfuse_scanner_options* given) {
   const vdbfuse_scanner_options from = readStruct(given, defaultScanner(), kOptionsBytes, "options");
   ScannerOptions options;
@@ -46,7 +33,8 @@ ScannerOptions scannerOptionsOf(const vdbfuse_scanner_options* given) {
   options.near = from.near_depth, options.far = from.far_depth;
   options.queue_capacity = static_cast<std::size_t>(from.queue_capacity);
   options.memory = static_cast<std::size_t>(from.memory_bytes);
-  options.when_full = whenFullOf(from.when_full);
+  options.when_full = choice(from.when_full, {WhenFull::DropOldest, WhenFull::DropNewest, WhenFull::Wait},
+                             "options.when_full");
   return options;
 }
 

@@ -33,14 +33,6 @@ vdbfuse_synth_options defaultSynth() {
   return options;
 }
 
-template <class Enum>
-Enum choice(std::int32_t number, std::initializer_list<Enum> values, const char* argument) {
-  if (number < 0 || static_cast<std::size_t>(number) >= values.size())
-    throw InvalidArgument(argument,
-                          std::to_string(number) + " is none of 0 to " + std::to_string(values.size() - 1));
-  return values.begin()[number];
-}
-
 Arc arcOf(std::int32_t arc) {
   return choice(arc, {Arc::Full, Arc::Ring, Arc::Upper, Arc::Front, Arc::Room}, "options.arc");
 }

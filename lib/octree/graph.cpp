@@ -57,6 +57,10 @@ float meanFrom(const ScalarGrid::Leaf& leaf, const Index3& low, int side, float 
 
 }  // namespace
 
+const char* nameOf(Border border) {
+  return border == Border::Outside ? "outside" : border == Border::Solid ? "solid" : "free";
+}
+
 Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
                    const std::vector<float>& sigma, const CutOptions& options, const Progress& progress) {
   const NetworkSource source = cutSource(octree, tiles, support, sigma, options);

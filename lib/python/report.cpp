@@ -23,10 +23,6 @@ py::dict gridOf(const GridReport& grid) {
                   "leaves"_a = grid.leaves, "cells"_a = grid.cells, "levels"_a = grid.cells_by_level);
 }
 
-const char* nameOf(Border border) {
-  return border == Border::Outside ? "outside" : border == Border::Solid ? "solid" : "free";
-}
-
 py::dict cutOf(const CutReportSummary& cut) {
   return py::dict("flow"_a = cut.flow, "certified"_a = cut.certified, "nodes"_a = cut.nodes,
                   "arcs"_a = cut.arcs, "lambda"_a = cut.lambda, "thickness"_a = cut.thickness,

@@ -63,14 +63,6 @@ StereoRequest requestOf(const py::kwargs& keywords) {
   return request;
 }
 
-PhotographSequence first(const PhotographSequence& all, std::size_t count) {
-  if (count == 0 || count >= all.size()) return all;
-  std::vector<PhotographHeader> headers;
-  for (std::size_t i = 0; i < count; ++i) headers.push_back(all.header(i));
-  return {std::move(headers),
-          [all](std::size_t index, Photograph& photograph) { photograph = all.load(index); }};
-}
-
 py::list reportOf(const StereoResult& result) {
   py::list report;
   for (const StereoView& view : result.views) {
@@ -102,7 +94,8 @@ DataSetPointer fromPath(const std::filesystem::path& path, const py::object& pro
   StereoResult result = longCall(progress, [&](const Progress& inner) {
     const ThreadLimit threads(request.threads);
     images = readImageSet(path, request.read);
-    return computeDepthMaps(first(images.photographs, request.views), request.stereo, inner);
+    if (request.views > 0) images.photographs = images.photographs.first(request.views);
+    return computeDepthMaps(images.photographs, request.stereo, inner);
   });
   DataSetPointer data = dataSetOf(std::move(result), request);
   data->set.format = images.format, data->set.reading.pose = images.pose, data->set.notes = images.notes;

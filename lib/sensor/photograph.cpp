@@ -65,4 +65,10 @@ Photograph PhotographSequence::load(std::size_t index) const {
   return photograph;
 }
 
+PhotographSequence PhotographSequence::first(std::size_t count) const {
+  PhotographSequence result = *this;
+  result.headers_.resize(std::min(count, size()));
+  return result;
+}
+
 }  // namespace vdbfuse

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands.h"
 
-#include <cerrno>
-#include <fstream>
-#include <system_error>
 #include <utility>
 
 #include "cli/config_reader.h"
 #include "cli/help.h"
 #include "cli/one_of.h"
 #include "run_options.h"
-#include "vdbfuse/base/errors.h"
+#include "text_file.h"
 #include "vdbfuse/base/simd.h"
 #include "vdbfuse/base/version.h"
 
@@ -35,12 +32,7 @@ void addCommands(CLI::App& app, Action& action) {
 std::vector<Output> takeConfig(const CLI::App& command, Action& action) {
   if (action.save_config.empty()) return {};
   const std::string text = savedConfig(command, action.found);
-  const auto write = [text](const std::filesystem::path& path) {
-    std::ofstream file(path);
-    file << text;
-    file.close();
-    if (!file) throw IoError(path, "cannot be written: " + std::generic_category().message(errno));
-  };
+  const auto write = [text](const std::filesystem::path& path) { writeText(path, text); };
   return {{std::exchange(action.save_config, {}), write}};
 }
 

@@ -19,6 +19,7 @@
 #include "progress_line.h"
 #include "render_slice.h"
 #include "run_options.h"
+#include "text_file.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/io/mesh_file.h"
@@ -61,8 +62,8 @@ Json writePage(const CompareRequest& request, const fs::path& folder, const Comp
   }
   fs::create_directory(folder / "viewer");
   for (const EmbeddedMesh& mesh : embedded)
-    writeBytes(folder / "viewer" / (mesh.viewer.name + ".glb"), mesh.viewer.glb);
-  writeBytes(folder / "report.html", page);
+    writeText(folder / "viewer" / (mesh.viewer.name + ".glb"), mesh.viewer.glb);
+  writeText(folder / "report.html", page);
   Json json = compareJson(request, run, embedded);
   writeJson(folder / "compare.json", json);
   return json;
@@ -115,15 +116,7 @@ void addMethodOptions(CLI::App& app, CompareRequest& request) {
   app.add_option("--balloon", o.evidence.balloon, "Inflation of constant ballooning")
       ->type_name("LOG-ODDS")
       ->capture_default_str();
-  auto* voxel = app.add_option("--voxel", o.voxel, "Edge of the finest cells, the same for all methods")
-                    ->check(positiveNumber())
-                    ->type_name("LENGTH")
-                    ->option_text("from the data: as fine as the measurements lie, or their noise");
-  app.add_option("--resolution", o.resolution, "In place of --voxel: longest side of the domain / voxel")
-      ->check(positiveNumber())
-      ->type_name("VOXELS")
-      ->option_text("from the data, at most 512")
-      ->excludes(voxel);
+  addVoxelOptions(app, o);
   app.add_option("--reference", request.reference, "The true surface, or what is taken for it: a mesh")
       ->type_name("FILE")
       ->option_text("none");
@@ -150,10 +143,7 @@ void addPageOptions(CLI::App& app, CompareRequest& request) {
       ->check(positiveNumber())
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--color", request.color, "auto: from the pictures, where the input has some")
-      ->transform(oneOf({"auto", "none"}))
-      ->type_name("WORD")
-      ->capture_default_str();
+  addColorOption(app, request.color);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "vdbfuse/evaluation/evaluate.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,7 +13,6 @@
 #include "run_options.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/parallel.h"
-#include "vdbfuse/base/version.h"
 #include "vdbfuse/io/atomic_file.h"
 #include "vdbfuse/io/mesh_file.h"
 

@@ -101,9 +101,6 @@ JudgedScan judged(const DepthSet& set, FuseRequest& request, ProgressLine& line)
   return scan;
 }
 
-// Looks at one view: data sets have pictures for all of them, or for none.
-bool hasPictures(const ViewSequence& views) { return !views.load(0).map.color.empty(); }
-
 Words wordsOf(const FuseRequest& request) { return request.quiet ? Words::Keep : Words::Print; }
 
 // What is fused. Depth maps are read without their pictures, which colour the mesh at the end.
@@ -124,8 +121,7 @@ Input readInput(FuseRequest& request, const Progress& progress) {
 }
 
 ViewSequence picturesOf(const FuseRequest& request, const Input& input) {
-  if (input.stereo) return input.set.views;
-  return readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load).views;
+  return input.stereo ? withPictures(input.set.views) : readPictures(request.input, request.sensor);
 }
 
 void requireOutputs(const FuseRequest& request) {
@@ -147,7 +143,7 @@ void fuse(FuseRequest request, const CLI::App& command, Action& action) {
   Reconstruction result = reconstruct(std::move(scan), request.reconstruct, line.progress());
   if (request.color == "auto") {
     const ViewSequence pictures = picturesOf(request, input);
-    if (hasPictures(pictures)) colorReconstruction(pictures, result, line.progress());
+    if (!pictures.empty()) colorReconstruction(pictures, result, line.progress());
   }
   if (input.stereo)
     result.steps.insert(result.steps.begin(), input.stereo->steps.begin(), input.stereo->steps.end());

@@ -72,16 +72,12 @@ std::string boxText(const Box& box) {
   return text("%.4g,%.4g,%.4g,%.4g,%.4g,%.4g", a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
 }
 
-std::string borderName(Border border) {
-  return border == Border::Outside ? "outside" : border == Border::Solid ? "solid" : "free";
-}
-
 void addCut(const Run& run, std::vector<FoundValue>& found) {
   const Parameters& p = run.parameters;
   const double diagonal = p.domain.diagonal().norm();
   found.push_back({"lambda", number(p.cut.lambda), whyLambda(run)});
   if (run.request.border == "auto")
-    found.push_back({"border", borderName(p.cut.border),
+    found.push_back({"border", nameOf(p.cut.border),
                      text("%zu of %zu sensors are inside the domain", p.sensors_inside, p.sensors)});
   if (run.request.thickness == "auto")
     found.push_back(

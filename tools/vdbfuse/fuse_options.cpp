@@ -26,17 +26,7 @@ const std::map<std::string, CompletionOptions::Kind> kCompletions = {
 
 void addGridOptions(CLI::App& app, FuseRequest& r) {
   app.option_defaults()->group("Grid");
-  auto* voxel = app.add_option("--voxel", r.reconstruct.voxel,
-                               "Edge of the finest cells; half of it costs four times as much")
-                    ->check(positiveNumber())
-                    ->type_name("LENGTH")
-                    ->option_text("from the data: as fine as the measurements lie, or their noise");
-  app.add_option("--resolution", r.reconstruct.resolution,
-                 "In place of --voxel: longest side of the domain / voxel")
-      ->check(positiveNumber())
-      ->type_name("VOXELS")
-      ->option_text("from the data, at most 512")
-      ->excludes(voxel);
+  addVoxelOptions(app, r.reconstruct);
   app.add_option("--border", r.border,
                  "What lies beyond the domain; auto: solid when most sensors are inside it, else outside")
       ->transform(oneOf({"auto", "outside", "solid", "free"}))
@@ -104,10 +94,7 @@ void addSurfaceOptions(CLI::App& app, FuseRequest& r) {
       ->check(nonNegativeNumber())
       ->type_name("N")
       ->capture_default_str();
-  app.add_option("--color", r.color, "auto: from the pictures, where the input has some")
-      ->transform(oneOf({"auto", "none"}))
-      ->type_name("WORD")
-      ->capture_default_str();
+  addColorOption(app, r.color);
   addChoice(app, "--completion", o.completion.kind, kCompletions,
             "Where nothing was measured: a minimal surface, or the faces of the cut");
 }

@@ -23,10 +23,6 @@ const char* nameOf(EvidenceRule rule) {
   return "";
 }
 
-const char* nameOf(Border border) {
-  return border == Border::Outside ? "outside" : border == Border::Solid ? "solid" : "free";
-}
-
 const char* nameOf(Method method) { return method == Method::Visibility ? "visibility" : "tsdf"; }
 
 Json json(const Box& box) {
@@ -108,14 +104,9 @@ Json meshJson(const Reconstruction& result, const TopologyReport& t) {
           {"colored", !result.mesh.colors.empty()}};
 }
 
-Json stepsJson(const std::vector<StepTime>& steps) {
-  Json list = Json::array();
-  for (const StepTime& s : steps) {
-    list.push_back({{"name", s.name},
-                    {"seconds", s.seconds},
-                    {"cpu_seconds", s.cpu_seconds},
-                    {"peak_memory_bytes", s.peak_memory_bytes}});
-  }
+Json stepsWithMemory(const std::vector<StepTime>& steps) {
+  Json list = stepsJson(steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) list[i]["peak_memory_bytes"] = steps[i].peak_memory_bytes;
   return list;
 }
 
@@ -162,7 +153,7 @@ Json fuseJson(const Reconstruction& result, const FuseContext& context) {
         {"primal", c.primal}, {"dual", c.dual}, {"area", c.area}, {"iterations", c.iterations}};
   }
   j["mesh"] = meshJson(result, context.topology);
-  j["steps"] = stepsJson(result.steps);
+  j["steps"] = stepsWithMemory(result.steps);
   j["peak_memory_bytes"] = peakMemoryBytes();
   j["memory"] = {{"budget_bytes", result.memory.budget},
                  {"estimated_bytes", result.memory.estimated},

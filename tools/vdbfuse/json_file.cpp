@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "json_file.h"
 
-#include <cerrno>
-#include <fstream>
-#include <system_error>
+#include <filesystem>
 
+#include "text_file.h"
 #include "vdbfuse/base/errors.h"
 #include "vdbfuse/base/version.h"
-#include "vdbfuse/io/atomic_file.h"
 
 namespace vdbfuse::tool {
 
@@ -18,15 +16,17 @@ Json jsonOf(const char* command) {
   return json;
 }
 
+Json stepsJson(const std::vector<StepTime>& steps) {
+  Json list = Json::array();
+  for (const StepTime& s : steps)
+    list.push_back({{"name", s.name}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
+  return list;
+}
+
 std::string jsonText(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
 void writeJson(const std::filesystem::path& path, const Json& json) {
-  AtomicFile target(path);
-  std::ofstream file(target.temporaryPath(), std::ios::binary);
-  file << jsonText(json) << '\n';
-  file.close();
-  if (!file) throw IoError(path, "cannot be written: " + std::generic_category().message(errno));
-  target.commit();
+  replaceText(path, jsonText(json) + "\n");
 }
 
 void refuseExisting(const std::filesystem::path& path) {

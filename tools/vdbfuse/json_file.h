@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "vdbfuse/base/progress.h"
 
 namespace vdbfuse::tool {
 
@@ -12,6 +15,9 @@ using Json = nlohmann::ordered_json;
 
 /// An object that begins with the version of the tool and the name of the subcommand.
 Json jsonOf(const char* command);
+
+/// Name, wall and processor time of each step.
+Json stepsJson(const std::vector<StepTime>& steps);
 
 /// Two spaces an indent. Numbers that are not finite become null.
 std::string jsonText(const Json& json);

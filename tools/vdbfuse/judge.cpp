@@ -33,9 +33,7 @@ struct Request : RunArguments {
 // judgement.json, and what differs from run to run.
 Json runJson(const JudgedScan& scan, const JudgementOrigin& origin) {
   Json json = Json::parse(judgementJson(scan, origin));
-  json["steps"] = Json::array();
-  for (const StepTime& s : scan.steps)
-    json["steps"].push_back({{"name", s.name}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
+  json["steps"] = stepsJson(scan.steps);
   json["peak_memory_bytes"] = peakMemoryBytes();
   return json;
 }

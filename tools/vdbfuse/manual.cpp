@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,8 +11,8 @@
 #include "cli/man_page.h"
 #include "cli/one_of.h"
 #include "commands.h"
+#include "text_file.h"
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/io/atomic_file.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -25,22 +24,13 @@ struct ManualOptions {
   fs::path folder;
 };
 
-void writePage(const fs::path& path, const std::string& text) {
-  AtomicFile target(path);
-  std::ofstream file(target.temporaryPath());
-  file << text;
-  file.close();
-  if (!file) throw IoError(path, "cannot be written");
-  target.commit();
-}
-
 void writeAll(const CLI::App& app, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw IoError(folder, "cannot be created: " + error.message());
-  writePage(folder / (manPageName(app) + ".1"), manPage(app, app));
+  replaceText(folder / (manPageName(app) + ".1"), manPage(app, app));
   for (const CommandInfo& command : describeSubcommands(app))
-    writePage(folder / (manPageName(*command.app) + ".1"), manPage(app, *command.app));
+    replaceText(folder / (manPageName(*command.app) + ".1"), manPage(app, *command.app));
 }
 
 void run(const CLI::App& app, const ManualOptions& options) {

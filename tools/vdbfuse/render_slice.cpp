@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "vdbfuse/base/errors.h"
-#include "vdbfuse/report/grid_levels.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -64,11 +63,10 @@ SlicePlane parsePlane(const std::string& text) {
   return {text[0] - 'x', value};
 }
 
-Image<Rgb8> renderSlice(const std::vector<const ScalarGrid*>& grids, const LevelSlice& slice) {
-  const GridLevels levels(grids);
+Image<Rgb8> renderSlice(const GridLevels& levels, const LevelSlice& slice) {
   const Box box = slice.box.isEmpty() ? levels.box() : slice.box;
   const auto field = [&](const Eigen::Vector3d& point) { return levels.at(point).value; };
-  const std::string& name = grids.front()->name();
+  const std::string& name = levels.finest().name();
   SliceOptions options;
   if (name == "rho" || name == "support" || name == "weight") options.colors = SliceColors::Sequential;
   options.low = slice.low, options.high = slice.high;
@@ -83,9 +81,8 @@ Image<Rgb8> renderSlice(const std::vector<const ScalarGrid*>& grids, const Level
 Image<Rgb8> renderSlice(const SliceRequest& request) {
   const SlicePlane plane = parsePlane(request.plane);
   const std::vector<ScalarGrid> grids = readLevels(request);
-  std::vector<const ScalarGrid*> levels;
-  for (const ScalarGrid& grid : grids) levels.push_back(&grid);
-  const Box box = GridLevels(levels).box();
+  const GridLevels levels(grids, grids.front().name());
+  const Box box = levels.box();
   if (box.isEmpty()) throw IoError(request.file, "", "a grid with values", "none");
   const CellLines lines = request.cells ? CellLines::Draw : CellLines::None;
   return renderSlice(levels, {plane, box, request.longest, lines, request.low, request.high});

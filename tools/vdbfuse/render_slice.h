@@ -3,11 +3,10 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "vdbfuse/geometry/image.h"
+#include "vdbfuse/report/grid_levels.h"
 #include "vdbfuse/report/slice.h"
-#include "vdbfuse/volume/scalar_grid.h"
 
 namespace vdbfuse::tool {
 
@@ -25,7 +24,7 @@ SlicePlane parsePlane(const std::string& text);
 
 enum class CellLines { None, Draw };
 
-/// A picture of grids in memory, finest level first: the finest known value at each point.
+/// A picture of grids in memory: the finest known value at each point.
 struct LevelSlice {
   SlicePlane plane;
   Box box;  ///< empty: around all voxels that hold a value
@@ -34,9 +33,9 @@ struct LevelSlice {
   double low = 0, high = 0;  ///< as of SliceRequest
 };
 
-/// Colours by the name of the first grid, as renderSlice() below. REQUIRES: a grid, and one with values or a
+/// Colours by the name of the finest grid, as renderSlice() below. REQUIRES: a grid, and one with values or a
 /// box.
-Image<Rgb8> renderSlice(const std::vector<const ScalarGrid*>& levels, const LevelSlice& slice);
+Image<Rgb8> renderSlice(const GridLevels& levels, const LevelSlice& slice);
 
 /// A slice through a grid and its coarser levels (`name_level1`, …): the finest known value at each point.
 /// rho, support and weight are drawn from dark to light, everything else around zero. Throws IoError,

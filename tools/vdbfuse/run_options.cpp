@@ -2,13 +2,10 @@
 #include "run_options.h"
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <system_error>
 
 #include "cli/number_check.h"
-#include "vdbfuse/base/errors.h"
+#include "text_file.h"
 
 namespace vdbfuse::tool {
 namespace {
@@ -47,10 +44,7 @@ JsonReport::JsonReport(const RunArguments& arguments, const Json& json) {
   text_ = jsonText(json) + "\n";
   if (!isFile(arguments.json)) return;
   file_.emplace(arguments.json);
-  std::ofstream file(file_->temporaryPath(), std::ios::binary);
-  file << text_;
-  file.close();
-  if (!file) throw IoError(arguments.json, "cannot be written: " + std::generic_category().message(errno));
+  writeText(file_->temporaryPath(), text_, arguments.json);
 }
 
 void JsonReport::commit() {

@@ -81,6 +81,27 @@ std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& argum
                 "What a missing depth around an object means")};
 }
 
+void addVoxelOptions(CLI::App& app, ReconstructOptions& options) {
+  auto* voxel = app.add_option("--voxel", options.voxel,
+                               "Edge of the finest cells; half of it costs four times as much")
+                    ->check(positiveNumber())
+                    ->type_name("LENGTH")
+                    ->option_text("from the data: as fine as the measurements lie, or their noise");
+  app.add_option("--resolution", options.resolution,
+                 "In place of --voxel: longest side of the domain / voxel")
+      ->check(positiveNumber())
+      ->type_name("VOXELS")
+      ->option_text("from the data, at most 512")
+      ->excludes(voxel);
+}
+
+void addColorOption(CLI::App& app, std::string& color) {
+  app.add_option("--color", color, "auto: from the pictures, where the input has some")
+      ->transform(oneOf({"auto", "none"}))
+      ->type_name("WORD")
+      ->capture_default_str();
+}
+
 void resolve(const SensorArguments& arguments, ReconstructOptions& options) {
   constexpr double kBelieveAll = 0.01;
   if (arguments.no_reliability) options.outliers = kBelieveAll;
@@ -100,6 +121,14 @@ DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arg
   if (words == Words::Keep) return set;
   for (const std::string& note : set.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
   return set;
+}
+
+ViewSequence withPictures(ViewSequence views) {
+  return views.load(0).map.color.empty() ? ViewSequence() : views;
+}
+
+ViewSequence readPictures(const std::filesystem::path& input, const SensorArguments& arguments) {
+  return withPictures(readScan(input, arguments, Words::Keep, ReadOptions::Color::Load).views);
 }
 
 }  // namespace vdbfuse::tool

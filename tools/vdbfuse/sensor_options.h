@@ -28,6 +28,12 @@ struct SensorArguments {
 std::vector<CLI::Option*> addSensorOptions(CLI::App& app, SensorArguments& arguments,
                                            ReconstructOptions& options);
 
+/// --voxel and --resolution.
+void addVoxelOptions(CLI::App& app, ReconstructOptions& options);
+
+/// --color auto|none: whether the mesh gets colours from the input's pictures.
+void addColorOption(CLI::App& app, std::string& color);
+
 /// What of the arguments is not yet in the options. Throws InvalidArgument.
 void resolve(const SensorArguments& arguments, ReconstructOptions& options);
 
@@ -39,5 +45,11 @@ enum class Words { Print, Keep };
 /// The data set cut to --views; its notes go to stderr.
 DepthSet readScan(const std::filesystem::path& input, const SensorArguments& arguments, Words words,
                   ReadOptions::Color color = ReadOptions::Color::Skip);
+
+/// The views with their pictures; none where there are no pictures. Looks at one view: data sets have
+/// pictures for all of them, or for none.
+ViewSequence withPictures(ViewSequence views);
+/// The same of the data set that readScan() gives.
+ViewSequence readPictures(const std::filesystem::path& input, const SensorArguments& arguments);
 
 }  // namespace vdbfuse::tool

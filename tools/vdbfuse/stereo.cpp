@@ -103,9 +103,7 @@ Json jsonOf(const Request& request, const ImageSet& set, const StereoSummary& su
 
 // What differs from run to run is not in the folder.
 Json withTimes(Json json, const StereoSummary& summary) {
-  json["steps"] = Json::array();
-  for (const StepTime& s : summary.steps)
-    json["steps"].push_back({{"name", s.name}, {"seconds", s.seconds}, {"cpu_seconds", s.cpu_seconds}});
+  json["steps"] = stepsJson(summary.steps);
   json["peak_memory_bytes"] = peakMemoryBytes();
   return json;
 }

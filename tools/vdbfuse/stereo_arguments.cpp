@@ -60,12 +60,7 @@ std::vector<CLI::Option*> addStereoOptions(CLI::App& app, StereoOptions& options
 ImageSet readPhotographs(const std::filesystem::path& path, const ImageReadOptions& options,
                          std::size_t most) {
   ImageSet set = readImageSet(path, options);
-  if (most == 0 || most >= set.photographs.size()) return set;
-  std::vector<PhotographHeader> headers;
-  for (std::size_t i = 0; i < most; ++i) headers.push_back(set.photographs.header(i));
-  set.photographs = PhotographSequence(
-      std::move(headers),
-      [all = set.photographs](std::size_t index, Photograph& photograph) { photograph = all.load(index); });
+  if (most > 0) set.photographs = set.photographs.first(most);
   return set;
 }
 

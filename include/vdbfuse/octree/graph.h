@@ -21,6 +21,9 @@ enum class Border {
   Free,     ///< nothing is said
 };
 
+/// "outside", "solid" or "free".
+const char* nameOf(Border border);
+
 struct CutOptions {
   double mu = 2.0;      ///< ρ = e^(−μ C): where two reliable views agree a surface costs next to nothing
   double lambda = 0.0;  ///< weight of σ, 1/length; a part of thickness τ survives if λ |σ| τ ≥ 2ρ

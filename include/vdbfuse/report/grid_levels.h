@@ -29,6 +29,9 @@ class GridLevels {
   };
   Cell at(const Eigen::Vector3d& point) const;
 
+  /// REQUIRES: a grid.
+  const ScalarGrid& finest() const { return *levels_.front(); }
+
   /// Around all voxels that hold a value; empty when none does.
   Box box() const;
 

@@ -65,6 +65,8 @@ class PhotographSequence {
   /// Throws IoError when a file cannot be read, InvalidArgument (naming the photograph) when
   /// validate(photograph) objects.
   Photograph load(std::size_t index) const;
+  /// The first `count` photographs, or all of them when there are fewer.
+  PhotographSequence first(std::size_t count) const;
 
  private:
   std::vector<PhotographHeader> headers_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compare/pictures.h"
+#include "text_file.h"
 #include "vdbfuse/report/histogram.h"
 
 namespace vdbfuse::tool {
@@ -50,7 +51,7 @@ std::vector<Drawing> drawHistogramFiles(const fs::path& folder, const MeasuredMe
   for (const Curves& each : {distance, missing, support}) {
     if (each.curves.empty()) continue;
     drawings.push_back({each.title, fs::path("histograms") / (each.file + ".svg")});
-    writeBytes(folder / drawings.back().file, drawHistograms(each.curves, {each.words, "share of the area"}));
+    writeText(folder / drawings.back().file, drawHistograms(each.curves, {each.words, "share of the area"}));
   }
   return drawings;
 }

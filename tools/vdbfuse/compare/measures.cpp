@@ -2,15 +2,11 @@
 #include "compare/measures.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <limits>
 #include <numeric>
-#include <system_error>
 
-#include "vdbfuse/base/errors.h"
 #include "vdbfuse/io/mesh_file.h"
 #include "vdbfuse/mesh/closest_point.h"
 
@@ -88,13 +84,6 @@ std::string lengthText(double length) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", length);
   return text;
-}
-
-void writeBytes(const fs::path& path, const std::string& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file << bytes;
-  file.close();
-  if (!file) throw IoError(path, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace vdbfuse::tool

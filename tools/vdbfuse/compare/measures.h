@@ -37,7 +37,4 @@ MeasuredMeshes measureMeshes(const CompareRequest& request, const std::filesyste
 /// How the page shows a length: three digits.
 std::string lengthText(double length);
 
-/// Puts text or bytes into a file. Throws IoError.
-void writeBytes(const std::filesystem::path& path, const std::string& bytes);
-
 }  // namespace vdbfuse::tool

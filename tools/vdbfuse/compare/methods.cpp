@@ -61,10 +61,7 @@ class Recorder {
   Recorder(const CompareRequest& request, const fs::path& folder, const DepthSet& set,
            const std::vector<StepTime>& shared, const Progress& progress, CompareRun& run)
       : request_(request), folder_(folder), set_(set), shared_(shared), progress_(progress), run_(run) {
-    if (request.color == "none") return;
-    ViewSequence pictures =
-        readScan(request.input, request.sensor, Words::Keep, ReadOptions::Color::Load).views;
-    if (!pictures.load(0).map.color.empty()) pictures_ = std::move(pictures);
+    if (request.color == "auto") pictures_ = readPictures(request.input, request.sensor);
   }
 
   void take(ComparedMethod method) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "compare/slices.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render_slice.h"
@@ -14,24 +15,22 @@ namespace fs = std::filesystem;
 constexpr int kLongest = 560;  // pixels
 constexpr double kBand = 4;    // voxels from the surface that the colours of distances reach
 
-using Levels = std::vector<const ScalarGrid*>;
+// Where the slices of one method go and what they show.
+struct Slices {
+  const fs::path& folder;
+  const std::vector<ScalarGrid>& grids;
+  const std::string& method;
 
-// The grid of that name and its coarser levels.
-Levels levelsOf(const std::vector<ScalarGrid>& grids, const std::string& name) {
-  Levels levels;
-  for (const ScalarGrid& grid : grids)
-    if (grid.name() == name || grid.name().starts_with(name + "_level")) levels.push_back(&grid);
-  return levels;
-}
-
-// Draws one and says where; nothing where there is no such grid.
-PictureFile draw(const fs::path& folder, const std::string& file, const Levels& levels,
-                 const LevelSlice& slice) {
-  if (levels.empty()) return {};
-  PictureFile picture = fs::path("slices") / (file + ".png");
-  writePng(folder / picture, renderSlice(levels, slice));
-  return picture;
-}
+  // Draws the grid of that name and says where; nothing where there is none.
+  PictureFile draw(const std::string& grid, const std::string& file, const LevelSlice& slice) const {
+    const bool has_grid =
+        std::any_of(grids.begin(), grids.end(), [&](const ScalarGrid& g) { return g.name() == grid; });
+    if (!has_grid) return {};
+    PictureFile picture = fs::path("slices") / (file + "-" + method + ".png");
+    writePng(folder / picture, renderSlice(GridLevels(grids, grid), slice));
+    return picture;
+  }
+};
 
 }  // namespace
 
@@ -44,18 +43,17 @@ SlicePlane choosePlane(const std::string& text, const Box& box, double voxel) {
 
 void writeSlices(const fs::path& folder, const SlicePlace& place, const std::vector<ScalarGrid>& grids,
                  MethodRecord& record) {
+  const Slices slices{folder, grids, record.name};
   const LevelSlice slice{place.plane, place.box, kLongest};
-  const Levels distance = levelsOf(grids, "surface"), sigma = levelsOf(grids, "sigma");
   LevelSlice near_surface = slice, cost = slice, cells = slice;
-  near_surface.high = kBand * distance.front()->frame().voxel;
+  near_surface.high = kBand * GridLevels(grids, "surface").finest().frame().voxel;
   cost.high = 1;
   cells.lines = CellLines::Draw;
-  record.distance_slice = draw(folder, "distance-" + record.name, distance, near_surface);
-  record.evidence_slice = draw(folder, "sigma-" + record.name, sigma, slice);
-  record.cell_slice = draw(folder, "cells-" + record.name, sigma, cells);
-  record.weight_slice = draw(folder, "rho-" + record.name, levelsOf(grids, "rho"), cost);
-  if (record.weight_slice.empty())
-    record.weight_slice = draw(folder, "weight-" + record.name, levelsOf(grids, "weight"), slice);
+  record.distance_slice = slices.draw("surface", "distance", near_surface);
+  record.evidence_slice = slices.draw("sigma", "sigma", slice);
+  record.cell_slice = slices.draw("sigma", "cells", cells);
+  record.weight_slice = slices.draw("rho", "rho", cost);
+  if (record.weight_slice.empty()) record.weight_slice = slices.draw("weight", "weight", slice);
 }
 
 }  // namespace vdbfuse::tool
