@@ -51,7 +51,8 @@ if(VDBFUSE_BUILD_TESTS)
   find_package(assimp CONFIG REQUIRED)
 endif()
 
-# A compiler cache, where there is one, makes clean builds cheap.
+# A compiler cache, where there is one, makes clean builds cheap. It keeps files that use precompiled headers only if
+# CCACHE_SLOPPINESS is pch_defines,time_macros (its manual, "Precompiled headers").
 find_program(VDBFUSE_CCACHE ccache)
 if(VDBFUSE_CCACHE AND PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${VDBFUSE_CCACHE})
