@@ -92,7 +92,7 @@ fi
 
 if [ "$all" = no ]; then
   # What does arithmetic of indices, and what reads files of others.
-  modules=(base geometry sensor mincut mesh octree io stereo formats)
+  modules=(base geometry mincut sensor mesh io formats)
   build "Sanitizers on the cheap modules" build-fuzz fuzz
   targets=()
   for module in "${modules[@]}"; do
