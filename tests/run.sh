@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # tests/run.sh [--all]: installs the Debian packages that are missing, builds with warnings as errors, runs all tests,
-# and those of the cheap modules once more under the address and undefined-behaviour sanitizers, and feeds damaged files
-# to the readers.
+# and those that read files or count cells once more under the address and undefined-behaviour sanitizers, and feeds
+# damaged files to the readers.
 #
 #   --all                   also: sanitizers on everything, clang++, no PCL, a static library, names in every file, HTML
 #                           of the pages, the report of vdbfuse compare in a browser, replay, completion, manual pages,
@@ -91,18 +91,9 @@ else
 fi
 
 if [ "$all" = no ]; then
-  # What does arithmetic of indices, and what reads files of others.
-  modules=(base geometry mincut sensor mesh io formats)
-  build "Sanitizers on the cheap modules" build-fuzz fuzz
-  targets=()
-  for module in "${modules[@]}"; do
-    targets+=("vdbfuse_test_$module")
-  done
-  cmake --build build-fuzz -j "$jobs" --target "${targets[@]}" vdbfuse_fuzz
-  for target in "${targets[@]}"; do
-    module=${target#vdbfuse_test_}
-    run_script "sanitizers, $module" "build-fuzz/tests/$module/$target" --gtest_brief=1
-  done
+  build "Sanitizers on the modules of the preset fuzz, and fuzzers" build-fuzz fuzz
+  cmake --build build-fuzz -j "$jobs"
+  run_tests sanitizers build-fuzz
 else
   build "Sanitizers on everything" build-asan asan -DVDBFUSE_MODULES=
   cmake --build build-asan -j "$jobs"

@@ -17,20 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr double kHang_s = 40;  // the sanitizers' own memory leaves no room for a limit
-#else
-constexpr double kHang_s = 5;
-#endif
+constexpr double kHang_s = kSanitized ? 40 : 5;
 
 // The process's own: other work on the machine does not count. What waits for ever is for ctest to stop.
 double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-// No allocation above a gibibyte while it lives.
+// No allocation above a gibibyte while it lives; the sanitizers' own memory leaves no room for a limit.
 class MemoryLimit {
  public:
   MemoryLimit() {
-#if !defined(__SANITIZE_ADDRESS__)
+    if (kSanitized) return;
     getrlimit(RLIMIT_AS, &before_);
     std::ifstream statm("/proc/self/statm");
     std::size_t pages = 0;
@@ -38,12 +34,9 @@ class MemoryLimit {
     rlimit limit = before_;
     limit.rlim_cur = pages * 4096 + (std::size_t{1} << 30);
     setrlimit(RLIMIT_AS, &limit);
-#endif
   }
   ~MemoryLimit() {
-#if !defined(__SANITIZE_ADDRESS__)
-    setrlimit(RLIMIT_AS, &before_);
-#endif
+    if (!kSanitized) setrlimit(RLIMIT_AS, &before_);
   }
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;

@@ -17,11 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::Sample;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kTrials = 150;
-#else
-constexpr int kTrials = 1000;
-#endif
+constexpr int kTrials = test::kSanitized ? 150 : 1000;
 
 // Whether it was refused.
 bool isRefused(const fs::path& input, const std::string& format) {

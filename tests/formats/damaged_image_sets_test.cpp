@@ -15,11 +15,7 @@ namespace {
 
 using test::Sample;
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int kTrials = 50;
-#else
-constexpr int kTrials = 300;
-#endif
+constexpr int kTrials = test::kSanitized ? 50 : 300;
 
 // Whether it was refused.
 bool isRefused(const std::filesystem::path& input, const std::string& format) {
