@@ -174,6 +174,35 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
   }
 }
 
+void compareDepths(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
+                   const float* noise, const BlockLook& look, std::size_t size, BlockComparison& comparison) {
+  const Floats df;
+  const Ints di;
+  const Table other_noise(measurements_noise.values(), measurements_noise.near(),
+                          measurements_noise.perStep(), NoiseTable::kSteps);
+  const FloatVec zero = hn::Zero(df), sigmas_squared = hn::Set(df, sigmas * sigmas);
+  const auto word = [&](Measured measured) { return hn::Set(di, static_cast<std::int32_t>(measured)); };
+  for (std::size_t i = 0; i < size; i += hn::Lanes(df)) {
+    const IntVec pixel = hn::Load(di, &look.pixel[i]);
+    const auto seen = hn::Gt(pixel, hn::Set(di, -1));
+    if (hn::AllFalse(di, seen)) {
+      hn::Store(word(Measured::Unseen), di, &comparison.words[i]);
+      continue;
+    }
+    const FloatVec measured = hn::GatherIndex(df, measurements, hn::Max(pixel, hn::Zero(di)));
+    const FloatVec further = hn::Sub(measured, hn::Load(df, &look.depth[i]));
+    const FloatVec own = hn::LoadU(df, noise + i), other = other_noise(measured);
+    const FloatVec limit = hn::Mul(sigmas_squared, hn::MulAdd(own, own, hn::Mul(other, other)));
+    const auto apart = hn::RebindMask(di, hn::Gt(hn::Mul(further, further), limit));
+    const IntVec side = hn::IfThenElse(hn::RebindMask(di, hn::Gt(further, zero)), word(Measured::Further),
+                                       word(Measured::Nearer));
+    const IntVec found = hn::IfThenElse(apart, side, word(Measured::Same));
+    const auto nothing = hn::RebindMask(di, hn::Le(measured, zero));
+    const IntVec answer = hn::IfThenElse(nothing, word(Measured::Nothing), found);
+    hn::Store(hn::IfThenElse(seen, answer, word(Measured::Unseen)), di, &comparison.words[i]);
+  }
+}
+
 void agreeSingle(const PreparedView& view, float voxel, float weight, const BlockLook& look, std::size_t size,
                  float* counts) {
   const Floats df;
@@ -254,6 +283,7 @@ namespace {
 HWY_EXPORT(lookPinhole);
 HWY_EXPORT(testifySingle);
 HWY_EXPORT(agreeSingle);
+HWY_EXPORT(compareDepths);
 HWY_EXPORT(accumulateNodes);
 HWY_EXPORT(logMeansOfNodes);
 HWY_EXPORT(targetName);
@@ -286,6 +316,17 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, floa
     const float behind = std::max(depth - view.depth.data()[pixel], 0.0f) * per_thickness;
     testimony.share[i] = std::exp(-behind * behind);
   }
+}
+
+// compareDepths() for one point.
+Measured compareOne(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
+                    float noise, std::int32_t pixel, float depth) {
+  if (pixel < 0) return Measured::Unseen;
+  const float measured = measurements[pixel];
+  if (measured == kInvalidDepth) return Measured::Nothing;
+  const float further = measured - depth, other = measurements_noise.at(measured);
+  if (further * further <= sigmas * sigmas * (noise * noise + other * other)) return Measured::Same;
+  return further > 0 ? Measured::Further : Measured::Nearer;
 }
 
 void agreeAny(const PreparedView& prepared, float voxel, float weight, const BlockLook& look,
@@ -336,6 +377,21 @@ void agree(const PreparedView& view, float voxel, float weight, const BlockLook&
   } else {
     agreeAny(view, voxel, weight, look, size, counts);
   }
+}
+
+BlockComparison compare(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
+                        const float* noise, const BlockLook& look, std::size_t size) {
+  BlockComparison result;
+  if (measurements_noise.isTabulated()) {
+    HWY_DYNAMIC_DISPATCH(compareDepths)(measurements, measurements_noise, sigmas, noise, look, size, result);
+    return result;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const Measured measured =
+        compareOne(measurements, measurements_noise, sigmas, noise[i], look.pixel[i], look.depth[i]);
+    result.words[i] = static_cast<std::int32_t>(measured);
+  }
+  return result;
 }
 
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,

@@ -20,6 +20,11 @@ void prefetch(const float* image, const BlockLook& look, std::size_t size);
 /// look(), and what testify() will read is on its way.
 BlockLook look(const PreparedView& view, const PointBlock& block);
 
+/// Compares the depths of points with what was measured there: the same within `sigmas` combined standard
+/// deviations of the measurement and of the points' own `noise`, which has PointBlock::kCapacity numbers.
+BlockComparison compare(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
+                        const float* noise, const BlockLook& look, std::size_t size);
+
 /// log L of every point whose pixel is measured: LikelihoodRatio of all its hypotheses. `thickness`: τ of
 /// BlockTestimony::share, 0: infinite.
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,

@@ -153,8 +153,9 @@ std::vector<Image<std::uint8_t>> ConfidenceBins::replace(std::vector<View>& view
     Image<float>& confidence = views[i].map.confidence;
     if (informative()) {
       bins[i] = Image<std::uint8_t>(confidence.width(), confidence.height(), 0, confidence.memory());
-      std::transform(confidence.begin(), confidence.end(), bins[i].begin(),
-                     [this](float c) { return binOf(c); });
+      std::transform(
+          confidence.begin(), confidence.end(), views[i].map.depth.begin(), bins[i].begin(),
+          [this](float c, float depth) { return depth == kInvalidDepth ? std::uint8_t{0} : binOf(c); });
       letGo(bins[i]);
     }
     confidence = {};

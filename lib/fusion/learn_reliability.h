@@ -8,7 +8,7 @@
 
 namespace vdbfuse {
 
-/// Bin of each pixel's confidence, all 0 when there is none.
+/// Bin of each measured pixel's confidence, all 0 when there is none.
 class ConfidenceBins {
  public:
   explicit ConfidenceBins(const std::vector<View>& views);

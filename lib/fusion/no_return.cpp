@@ -2,7 +2,9 @@
 #include "vdbfuse/fusion/no_return.h"
 
 #include <algorithm>
+#include <array>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "vdbfuse/sensor/view.h"
@@ -33,6 +35,8 @@ Image<std::uint8_t> filterSquare(const Image<std::uint8_t>& mask, Keep keep) {
   const auto extent = [](int i, int count) {
     return std::min(i + kRadius, count - 1) - std::max(i - kRadius, 0) + 1;
   };
+  std::vector<int> extents(columns);
+  for (int x = 0; x < width; ++x) extents[static_cast<std::size_t>(x)] = extent(x, width);
   std::vector<Counts> rows(static_cast<std::size_t>(height), Counts(columns));
   std::vector<int> ones(columns, 0);
   for (int y = 0; y < height; ++y) countAlongRow(mask.row(y), width, rows[static_cast<std::size_t>(y)]);
@@ -45,31 +49,57 @@ Image<std::uint8_t> filterSquare(const Image<std::uint8_t>& mask, Keep keep) {
   for (int y = 0; y < kRadius; ++y) accumulate(y, 1);
   for (int y = 0; y < height; ++y) {
     accumulate(y + kRadius, 1);
-    for (int x = 0; x < width; ++x)
-      result(x, y) = keep(ones[static_cast<std::size_t>(x)], extent(x, width) * extent(y, height));
+    const int lines = extent(y, height);
+    std::uint8_t* row = result.row(y);
+    for (std::size_t x = 0; x < columns; ++x) row[x] = keep(ones[x], extents[x] * lines);
     accumulate(y - kRadius, -1);
   }
   return result;
 }
 
-// Keeps what is joined to the border through 4-neighbours.
-Image<std::uint8_t> joinedToBorder(const Image<std::uint8_t>& mask) {
-  Image<std::uint8_t> result(mask.width(), mask.height());
-  std::vector<std::array<int, 2>> stack;
-  const auto visit = [&](int x, int y) {
-    if (!mask.contains(x, y) || !mask(x, y) || result(x, y)) return;
-    result(x, y) = 1;
-    stack.push_back({x, y});
-  };
-  for (int x = 0; x < mask.width(); ++x) visit(x, 0), visit(x, mask.height() - 1);
-  for (int y = 0; y < mask.height(); ++y) visit(0, y), visit(mask.width() - 1, y);
-  while (!stack.empty()) {
-    const auto [x, y] = stack.back();
-    stack.pop_back();
-    visit(x - 1, y), visit(x + 1, y), visit(x, y - 1), visit(x, y + 1);
+// Keeps what is joined to the border through 4-neighbours, a run of a row at a time.
+class BorderFill {
+ public:
+  explicit BorderFill(const Image<std::uint8_t>& mask) : mask_(mask), result_(mask.width(), mask.height()) {}
+
+  Image<std::uint8_t> fill() {
+    const int right = mask_.width() - 1, bottom = mask_.height() - 1;
+    for (int x = 0; x <= right; ++x) visit(x, 0), visit(x, bottom);
+    for (int y = 0; y <= bottom; ++y) visit(0, y), visit(right, y);
+    while (!seeds_.empty()) {
+      const auto [x, y] = seeds_.back();
+      seeds_.pop_back();
+      if (isNew(x, y)) fillRun(x, y);
+    }
+    return std::move(result_);
   }
-  return result;
-}
+
+ private:
+  bool isNew(int x, int y) const { return mask_(x, y) && !result_(x, y); }
+  void visit(int x, int y) {
+    if (isNew(x, y)) seeds_.push_back({x, y});
+  }
+
+  void fillRun(int x, int y) {
+    int begin = x, end = x + 1;
+    while (begin > 0 && mask_(begin - 1, y)) --begin;
+    while (end < mask_.width() && mask_(end, y)) ++end;
+    std::fill(result_.row(y) + begin, result_.row(y) + end, std::uint8_t{1});
+    if (y > 0) visitRuns(begin, end, y - 1);
+    if (y + 1 < mask_.height()) visitRuns(begin, end, y + 1);
+  }
+
+  // The first pixel of each run of new ones within [begin, end).
+  void visitRuns(int begin, int end, int y) {
+    for (int x = begin; x < end; ++x) {
+      if (x == begin || !mask_(x - 1, y)) visit(x, y);
+    }
+  }
+
+  const Image<std::uint8_t>& mask_;
+  Image<std::uint8_t> result_;
+  std::vector<std::array<int, 2>> seeds_;
+};
 
 }  // namespace
 
@@ -86,7 +116,7 @@ Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& 
   Image<std::uint8_t> squares = filterSquare(passable, all);
   const Image<std::uint8_t> mostly_missing = filterSquare(missing, most);
   std::transform(squares.begin(), squares.end(), mostly_missing.begin(), squares.begin(), std::bit_and<>());
-  return joinedToBorder(filterSquare(squares, any));
+  return BorderFill(filterSquare(squares, any)).fill();
 }
 
 double borderShare(const Image<std::uint8_t>& mask) {

@@ -23,12 +23,13 @@ class PackedNormal {
 
   bool isNone() const { return x_ == kNone; }
   /// Zero when there is none.
-  Eigen::Vector3f unpack() const {
-    if (isNone()) return Eigen::Vector3f::Zero();
+  Eigen::Vector3f unpack() const { return isNone() ? Eigen::Vector3f::Zero() : direction().normalized(); }
+  /// Along the normal, not of unit length. REQUIRES: there is one.
+  Eigen::Vector3f direction() const {
     Eigen::Vector2f place(static_cast<float>(x_) / kLargest, static_cast<float>(y_) / kLargest);
     const float z = 1 - place.cwiseAbs().sum();
     if (z < 0) place = folded(place);
-    return Eigen::Vector3f(place.x(), place.y(), z).normalized();
+    return {place.x(), place.y(), z};
   }
 
  private:

@@ -21,8 +21,6 @@ constexpr float kFacingCosine = 0.26f;
 
 std::uint8_t occlusionBin(int hidden) { return hidden < 2 ? 0 : hidden == 2 ? 1 : hidden < 5 ? 2 : 3; }
 
-enum class Answer { Unseen, Agrees, SeesPast, Missed, Hidden };
-
 std::uint8_t capped(int count, std::size_t bins) {
   return static_cast<std::uint8_t>(std::min<int>(count, static_cast<int>(bins) - 1));
 }
@@ -57,6 +55,7 @@ class Hearing {
     std::vector<PixelRun> runs = collectRuns();
     for (PixelRun& run : runs) {
       const PointBlock block(run.points);
+      prepare(run);
       for (std::size_t k = 0; k < projectors_.size(); ++k) {
         if (projectors_[k].mightSee(block.centre, block.radius)) ask(k, block, run);
       }
@@ -81,6 +80,9 @@ class Hearing {
     std::vector<std::size_t> pixels;
     std::vector<Eigen::Vector3d> points;
     std::vector<Answers> answers;
+    std::vector<float> noise;              // standard deviations; PointBlock::kCapacity of them
+    std::vector<Eigen::Vector3f> normals;  // zero where unknown
+    std::vector<Measured> said;            // by the neighbour that is being asked
   };
 
   std::vector<PixelRun> collectRuns() const {
@@ -94,8 +96,17 @@ class Hearing {
       }
     }
     if (!runs.empty() && runs.back().points.empty()) runs.pop_back();
-    for (PixelRun& run : runs) run.answers.resize(run.points.size());
     return runs;
+  }
+
+  void prepare(PixelRun& run) const {
+    run.answers.resize(run.points.size());
+    run.said.resize(run.points.size());
+    run.noise.resize(PointBlock::kCapacity);
+    for (std::size_t i = 0; i < run.pixels.size(); ++i) {
+      run.noise[i] = static_cast<float>(sensor_.noise.at(views_[index_].map.depth.data()[run.pixels[i]]));
+      run.normals.push_back(surfaces_[index_].normal.data()[run.pixels[i]].unpack());
+    }
   }
 
   // Tiles stay together in the images of the neighbours, whichever way those are turned.
@@ -124,63 +135,79 @@ class Hearing {
   }
 
   void ask(std::size_t k, const PointBlock& block, PixelRun& run) const {
+    const std::size_t other = neighbours_[k];
     const BlockLook seen = look(projectors_[k], block);
-    prefetch(views_[neighbours_[k]].map.depth.data(), seen, block.size);
-    for (std::size_t i = 0; i < block.size; ++i) {
-      if (seen.pixel[i] < 0) continue;
-      const Asked asked{static_cast<float>(sensor_.noise.at(depth(run.pixels[i]))), normal(run.pixels[i]),
-                        static_cast<std::size_t>(seen.pixel[i]), seen.depth[i]};
-      const Answer answer = answerOf(k, asked);
-      Answers& answers = run.answers[i];
-      if (answer == Answer::Agrees) ++answers.agreeing;
-      if (answer == Answer::SeesPast) ++answers.past;
-      if (answer == Answer::Missed) ++answers.missed;
-      if (answer == Answer::Hidden && faces(asked.normal, neighbours_[k], run.points[i])) ++answers.hidden;
+    prefetch(views_[other].map.depth.data(), seen, block.size);
+    answer(k, other, seen, run);
+    if (other < alternatives_.size()) {
+      for (const std::size_t layer : alternatives_[other]) askAlternative(k, layer, seen, run);
+    }
+    if (!views_[other].map.mask.empty()) lookPastObject(views_[other].map, seen, run);
+    for (std::size_t i = 0; i < block.size; ++i) tally(run.said[i], other, i, run);
+  }
+
+  // What view `index`, neighbour k or an alternative of it, says where it saw the points.
+  void answer(std::size_t k, std::size_t index, const BlockLook& seen, PixelRun& run) const {
+    const BlockComparison comparison = compare(views_[index].map.depth.data(), noise_[k], kAgreeSigmas,
+                                               run.noise.data(), seen, run.points.size());
+    const PackedNormal* normals = surfaces_[index].normal.data();
+    for (std::size_t i = 0; i < run.points.size(); ++i) {
+      run.said[i] = comparison[i];
+      // A surface that is turned away is another, which hides the point.
+      if (comparison[i] == Measured::Same && turnsAway(run.normals[i], normals[seen.pixel[i]]))
+        run.said[i] = Measured::Nearer;
     }
   }
 
-  // A point, and where the neighbour saw it.
-  struct Asked {
-    float noise;
-    Eigen::Vector3f normal;
-    std::size_t pixel;
-    float depth;
-  };
+  // Unknown normals do not.
+  static bool turnsAway(const Eigen::Vector3f& normal, PackedNormal other) {
+    if (normal.isZero() || other.isNone()) return false;
+    const Eigen::Vector3f direction = other.direction();
+    const float along = normal.dot(direction);
+    return along < 0 || along * along < kAgreeCosine * kAgreeCosine * direction.squaredNorm();
+  }
 
-  float depth(std::size_t pixel) const { return views_[index_].map.depth.data()[pixel]; }
-  Eigen::Vector3f normal(std::size_t pixel) const { return surfaces_[index_].normal.data()[pixel].unpack(); }
+  void askAlternative(std::size_t k, std::size_t layer, const BlockLook& seen, PixelRun& run) const {
+    const std::vector<Measured> said = run.said;
+    answer(k, layer, seen, run);
+    for (std::size_t i = 0; i < said.size(); ++i) {
+      if (run.said[i] != Measured::Same) run.said[i] = said[i];
+    }
+  }
+
+  static void lookPastObject(const DepthMap& map, const BlockLook& seen, PixelRun& run) {
+    for (std::size_t i = 0; i < run.said.size(); ++i) {
+      const int pixel = seen.pixel[i];
+      if (pixel >= 0 && isOutsideMask(map, pixel % map.depth.width(), pixel / map.depth.width()))
+        run.said[i] = Measured::Further;
+    }
+  }
+
+  void tally(Measured said, std::size_t other, std::size_t i, PixelRun& run) const {
+    Answers& answers = run.answers[i];
+    switch (said) {
+      case Measured::Unseen:
+        return;
+      case Measured::Same:
+        ++answers.agreeing;
+        return;
+      case Measured::Further:
+        ++answers.past;
+        return;
+      case Measured::Nothing:
+        ++answers.missed;
+        return;
+      case Measured::Nearer:
+        answers.hidden += faces(run.normals[i], other, run.points[i]);
+    }
+  }
 
   // An unknown normal may face anything.
   bool faces(const Eigen::Vector3f& normal, std::size_t view, const Eigen::Vector3d& point) const {
-    const Eigen::Vector3f to_sensor =
-        (views_[view].world_from_camera.translation() - point).cast<float>().normalized();
-    return normal.isZero() || normal.dot(to_sensor) > kFacingCosine;
-  }
-
-  Answer answerOf(std::size_t k, const Asked& asked) const {
-    const DepthMap& map = views_[neighbours_[k]].map;
-    if (!map.mask.empty() && isOutsideMask(map, static_cast<int>(asked.pixel) % map.depth.width(),
-                                           static_cast<int>(asked.pixel) / map.depth.width()))
-      return Answer::SeesPast;
-    const Answer answer = compare(k, neighbours_[k], asked);
-    if (answer == Answer::Agrees || neighbours_[k] >= alternatives_.size()) return answer;
-    for (const std::size_t layer : alternatives_[neighbours_[k]]) {
-      if (compare(k, layer, asked) == Answer::Agrees) return Answer::Agrees;
-    }
-    return answer;
-  }
-
-  // What view `index`, neighbour k or an alternative of it, measured where it saw the point.
-  Answer compare(std::size_t k, std::size_t index, const Asked& asked) const {
-    const float measured = views_[index].map.depth.data()[asked.pixel];
-    if (measured == kInvalidDepth) return Answer::Missed;
-    const float further = measured - asked.depth, other_noise = noise_[k].at(measured);
-    if (further * further >
-        kAgreeSigmas * kAgreeSigmas * (asked.noise * asked.noise + other_noise * other_noise))
-      return further > 0 ? Answer::SeesPast : Answer::Hidden;
-    const PackedNormal other_normal = surfaces_[index].normal.data()[asked.pixel];
-    if (asked.normal.isZero() || other_normal.isNone()) return Answer::Agrees;
-    return asked.normal.dot(other_normal.unpack()) >= kAgreeCosine ? Answer::Agrees : Answer::Hidden;
+    if (normal.isZero()) return true;
+    const Eigen::Vector3f to_sensor = (views_[view].world_from_camera.translation() - point).cast<float>();
+    const float along = normal.dot(to_sensor);
+    return along > 0 && along * along > kFacingCosine * kFacingCosine * to_sensor.squaredNorm();
   }
 
   const std::vector<View>& views_;

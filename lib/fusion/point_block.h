@@ -47,6 +47,13 @@ struct BlockLook {
   alignas(64) std::array<float, PointBlock::kCapacity> depth;         ///< in the sensor's own measure
 };
 
+/// What a view measured where it sees the points of a block.
+enum class Measured : std::int32_t { Unseen, Nothing, Further, Nearer, Same };
+struct BlockComparison {
+  Measured operator[](std::size_t i) const { return static_cast<Measured>(words[i]); }
+  alignas(64) std::array<std::int32_t, PointBlock::kCapacity> words;
+};
+
 /// What one view's measurements say of the points of a block.
 struct BlockTestimony {
   alignas(64) std::array<float, PointBlock::kCapacity> log_ratio;  ///< log L; 0 where nothing was measured

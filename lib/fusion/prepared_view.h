@@ -24,7 +24,7 @@ class NoiseTable {
         per_step_(static_cast<float>(kSteps / (sensor.far - sensor.near))),
         sensor_(&sensor),
         projection_(&projection) {
-    if (!(per_step_ > 0)) return;
+    if (!isTabulated()) return;
     for (int i = 0; i <= kSteps; ++i) {
       const double depth = sensor.near + i * (sensor.far - sensor.near) / kSteps;
       values_[static_cast<std::size_t>(i)] = static_cast<float>(lookupNoise(sensor, projection, depth));
@@ -33,7 +33,7 @@ class NoiseTable {
                      [](float a, float b) { return std::max(a, b); });
   }
   float at(float depth) const {
-    if (!(per_step_ > 0)) return static_cast<float>(lookupNoise(*sensor_, *projection_, depth));
+    if (!isTabulated()) return static_cast<float>(lookupNoise(*sensor_, *projection_, depth));
     const float place = std::clamp((depth - near_) * per_step_, 0.0f, kSteps - 0.001f);
     const std::size_t i = static_cast<std::size_t>(place);
     return values_[i] + (place - static_cast<float>(i)) * (values_[i + 1] - values_[i]);
@@ -43,6 +43,7 @@ class NoiseTable {
     const float place = std::clamp((depth - near_) * per_step_, 0.0f, kSteps - 0.001f);
     return bounds_[static_cast<std::size_t>(place) + 1];
   }
+  bool isTabulated() const { return per_step_ > 0; }
   const float* values() const { return values_.data(); }
   float near() const { return near_; }
   float perStep() const { return per_step_; }
