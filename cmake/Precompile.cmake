@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # What most files include is parsed once a target instead of once a file: half of a clean build. Files still include
-# what they use; builds without this (clang++, static: tests/run.sh --all) find who forgot.
+# what they use; a build without this (the static one of tests/run.sh --all) finds who forgot.
 option(VDBFUSE_PRECOMPILE "Precompile the headers that most files include" ON)
 
 set(vdbfuse_precompiled
