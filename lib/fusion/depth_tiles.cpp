@@ -8,7 +8,6 @@
 namespace vdbfuse {
 namespace {
 
-constexpr int kSide = DepthTiles::kSide;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 }  // namespace

@@ -187,7 +187,9 @@ TsdfVolume TsdfVolume::read(const std::filesystem::path& path) {
     const ScalarGrid::Leaf distances = leafAt(path, distance, weights.origin);
     const std::uint32_t leaf = state.insert(weights.origin);
     state.last_change[leaf] = state.changes;
-    std::visit([&](auto& tree) { fill(tree, leaf, distances, weights, options.truncation); }, state.voxels);
+    std::visit([&, truncation =
+                       options.truncation](auto& tree) { fill(tree, leaf, distances, weights, truncation); },
+               state.voxels);
   }
   if (state.colors) fillColors(path, state);
   return volume;
