@@ -21,7 +21,7 @@ TEST(Slice, AxesRunToTheRightAndUpwardsAsStated) {
     int axis, right, up;
   };
   for (const auto& [axis, right, up] : {Case{0, 1, 2}, Case{1, 0, 2}, Case{2, 0, 1}}) {
-    const auto slice = [&](int shown) {
+    const auto slice = [axis = axis](int shown) {
       return sampleSlice([&](const Vector3d& p) { return p[shown]; }, kBox, {axis, 0.25}, 60);
     };
     const Image<float> along_right = slice(right), along_up = slice(up), across = slice(axis);
