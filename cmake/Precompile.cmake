@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# What most files include is parsed once a target instead of once a file: half of a clean build. Files still include
-# what they use; a build without this (the static one of tests/run.sh --all) finds who forgot.
-option(VDBFUSE_PRECOMPILE "Precompile the headers that most files include" ON)
-
+# What makes a clean build quick. With VDBFUSE_PRECOMPILE what most files include is parsed once a target instead of once
+# a file. Files still include what they use; a build without it (the static one of tests/run.sh --all) finds who forgot.
 set(vdbfuse_precompiled
     <algorithm> <array> <bit> <charconv> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <limits> <map>
     <memory> <numbers> <numeric> <optional> <span> <sstream> <string> <string_view> <utility> <vector>
     <Eigen/Core> <Eigen/Geometry>)
+
+# For what takes the compiler longer than the processor: compiles in two thirds of the time.
+function(vdbfuse_optimise_less TARGET)
+  target_compile_options(${TARGET} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
 
 # vdbfuse_precompile(TARGET [header...]): the usual headers, and these.
 function(vdbfuse_precompile TARGET)
@@ -25,7 +28,7 @@ function(vdbfuse_precompile_tests TARGET)
     file(CONFIGURE OUTPUT ${source} CONTENT "")
     add_library(vdbfuse_precompiled_tests OBJECT ${source})
     target_link_libraries(vdbfuse_precompiled_tests PRIVATE vdbfuse::vdbfuse vdbfuse_flags GTest::gmock GTest::gtest)
-    target_compile_options(vdbfuse_precompiled_tests PRIVATE $<$<CONFIG:Release>:-O1>)
+    vdbfuse_optimise_less(vdbfuse_precompiled_tests)
     vdbfuse_precompile(vdbfuse_precompiled_tests <gmock/gmock.h> <gtest/gtest.h>)
   endif()
   target_precompile_headers(${TARGET} REUSE_FROM vdbfuse_precompiled_tests)

@@ -23,9 +23,9 @@ with_pcl=${VDBFUSE_WITH_PCL:-ON}
 with_python=${VDBFUSE_WITH_PYTHON:-ON}
 jobs=$(nproc)
 [ "$all" = no ] && fuzz_seconds=10 || fuzz_seconds=30
+fuzz_seconds=${VDBFUSE_FUZZ_SECONDS:-$fuzz_seconds}
 # So that a compiler cache keeps files with precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
-fuzz_seconds=${VDBFUSE_FUZZ_SECONDS:-$fuzz_seconds}
 results=()
 failed=0
 

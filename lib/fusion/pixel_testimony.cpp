@@ -52,15 +52,14 @@ class Hearing {
   Image<PixelTestimony> hear(MissCounts& misses) const {
     const Image<float>& depth = views_[index_].map.depth;
     Image<PixelTestimony> result(depth.width(), depth.height(), {}, depth.memory());
-    std::vector<PixelRun> runs = collectRuns();
-    for (PixelRun& run : runs) {
+    for (const PixelRun& run : collectRuns()) {
       const PointBlock block(run.points);
-      prepare(run);
+      Inquiry inquiry = inquire(run);
       for (std::size_t k = 0; k < projectors_.size(); ++k) {
-        if (projectors_[k].mightSee(block.centre, block.radius)) ask(k, block, run);
+        if (projectors_[k].mightSee(block.centre, block.radius)) ask(k, block, inquiry);
       }
       for (std::size_t i = 0; i < run.pixels.size(); ++i) {
-        const Answers& answers = run.answers[i];
+        const Answers& answers = inquiry.answers[i];
         if (answers.agreeing >= kConfirmed)
           misses.missed += answers.missed, misses.looked += answers.missed + answers.agreeing;
         result.data()[run.pixels[i]] = testimonyOf(run.pixels[i], answers);
@@ -79,10 +78,14 @@ class Hearing {
   struct PixelRun {
     std::vector<std::size_t> pixels;
     std::vector<Eigen::Vector3d> points;
-    std::vector<Answers> answers;
+  };
+
+  // What neighbours need to know of the pixels of a run, and what they answer.
+  struct Inquiry {
     std::vector<float> noise;              // standard deviations; PointBlock::kCapacity of them
     std::vector<Eigen::Vector3f> normals;  // zero where unknown
     std::vector<Measured> said;            // by the neighbour that is being asked
+    std::vector<Answers> answers;          // by all so far
   };
 
   std::vector<PixelRun> collectRuns() const {
@@ -99,14 +102,15 @@ class Hearing {
     return runs;
   }
 
-  void prepare(PixelRun& run) const {
-    run.answers.resize(run.points.size());
-    run.said.resize(run.points.size());
-    run.noise.resize(PointBlock::kCapacity);
-    for (std::size_t i = 0; i < run.pixels.size(); ++i) {
-      run.noise[i] = static_cast<float>(sensor_.noise.at(views_[index_].map.depth.data()[run.pixels[i]]));
-      run.normals.push_back(surfaces_[index_].normal.data()[run.pixels[i]].unpack());
+  Inquiry inquire(const PixelRun& run) const {
+    const std::size_t count = run.pixels.size();
+    Inquiry inquiry{std::vector<float>(PointBlock::kCapacity), std::vector<Eigen::Vector3f>(count),
+                    std::vector<Measured>(count), std::vector<Answers>(count)};
+    for (std::size_t i = 0; i < count; ++i) {
+      inquiry.noise[i] = static_cast<float>(sensor_.noise.at(views_[index_].map.depth.data()[run.pixels[i]]));
+      inquiry.normals[i] = surfaces_[index_].normal.data()[run.pixels[i]].unpack();
     }
+    return inquiry;
   }
 
   // Tiles stay together in the images of the neighbours, whichever way those are turned.
@@ -134,28 +138,45 @@ class Hearing {
     return testimony;
   }
 
-  void ask(std::size_t k, const PointBlock& block, PixelRun& run) const {
+  void ask(std::size_t k, const PointBlock& block, Inquiry& inquiry) const {
     const std::size_t other = neighbours_[k];
     const BlockLook seen = look(projectors_[k], block);
     prefetch(views_[other].map.depth.data(), seen, block.size);
-    answer(k, other, seen, run);
+    answer(k, other, seen, inquiry);
     if (other < alternatives_.size()) {
-      for (const std::size_t layer : alternatives_[other]) askAlternative(k, layer, seen, run);
+      for (const std::size_t layer : alternatives_[other]) askAlternative(k, layer, seen, inquiry);
     }
-    if (!views_[other].map.mask.empty()) lookPastObject(views_[other].map, seen, run);
-    for (std::size_t i = 0; i < block.size; ++i) tally(run.said[i], other, i, run);
+    if (!views_[other].map.mask.empty()) lookPastObject(views_[other].map, seen, inquiry.said);
+    for (std::size_t i = 0; i < block.size; ++i) {
+      Answers& answers = inquiry.answers[i];
+      switch (inquiry.said[i]) {
+        case Measured::Unseen:
+          break;
+        case Measured::Same:
+          ++answers.agreeing;
+          break;
+        case Measured::Further:
+          ++answers.past;
+          break;
+        case Measured::Nothing:
+          ++answers.missed;
+          break;
+        case Measured::Nearer:
+          answers.hidden += faces(inquiry.normals[i], other, block.point(i));
+      }
+    }
   }
 
   // What view `index`, neighbour k or an alternative of it, says where it saw the points.
-  void answer(std::size_t k, std::size_t index, const BlockLook& seen, PixelRun& run) const {
+  void answer(std::size_t k, std::size_t index, const BlockLook& seen, Inquiry& inquiry) const {
     const BlockComparison comparison = compare(views_[index].map.depth.data(), noise_[k], kAgreeSigmas,
-                                               run.noise.data(), seen, run.points.size());
+                                               inquiry.noise.data(), seen, inquiry.said.size());
     const PackedNormal* normals = surfaces_[index].normal.data();
-    for (std::size_t i = 0; i < run.points.size(); ++i) {
-      run.said[i] = comparison[i];
+    for (std::size_t i = 0; i < inquiry.said.size(); ++i) {
+      inquiry.said[i] = comparison[i];
       // A surface that is turned away is another, which hides the point.
-      if (comparison[i] == Measured::Same && turnsAway(run.normals[i], normals[seen.pixel[i]]))
-        run.said[i] = Measured::Nearer;
+      if (comparison[i] == Measured::Same && turnsAway(inquiry.normals[i], normals[seen.pixel[i]]))
+        inquiry.said[i] = Measured::Nearer;
     }
   }
 
@@ -167,38 +188,19 @@ class Hearing {
     return along < 0 || along * along < kAgreeCosine * kAgreeCosine * direction.squaredNorm();
   }
 
-  void askAlternative(std::size_t k, std::size_t layer, const BlockLook& seen, PixelRun& run) const {
-    const std::vector<Measured> said = run.said;
-    answer(k, layer, seen, run);
+  void askAlternative(std::size_t k, std::size_t layer, const BlockLook& seen, Inquiry& inquiry) const {
+    const std::vector<Measured> said = inquiry.said;
+    answer(k, layer, seen, inquiry);
     for (std::size_t i = 0; i < said.size(); ++i) {
-      if (run.said[i] != Measured::Same) run.said[i] = said[i];
+      if (inquiry.said[i] != Measured::Same) inquiry.said[i] = said[i];
     }
   }
 
-  static void lookPastObject(const DepthMap& map, const BlockLook& seen, PixelRun& run) {
-    for (std::size_t i = 0; i < run.said.size(); ++i) {
+  static void lookPastObject(const DepthMap& map, const BlockLook& seen, std::vector<Measured>& said) {
+    for (std::size_t i = 0; i < said.size(); ++i) {
       const int pixel = seen.pixel[i];
       if (pixel >= 0 && isOutsideMask(map, pixel % map.depth.width(), pixel / map.depth.width()))
-        run.said[i] = Measured::Further;
-    }
-  }
-
-  void tally(Measured said, std::size_t other, std::size_t i, PixelRun& run) const {
-    Answers& answers = run.answers[i];
-    switch (said) {
-      case Measured::Unseen:
-        return;
-      case Measured::Same:
-        ++answers.agreeing;
-        return;
-      case Measured::Further:
-        ++answers.past;
-        return;
-      case Measured::Nothing:
-        ++answers.missed;
-        return;
-      case Measured::Nearer:
-        answers.hidden += faces(run.normals[i], other, run.points[i]);
+        said[i] = Measured::Further;
     }
   }
 
