@@ -57,7 +57,7 @@ ScalarGrid countAgreement(const JudgedViews& judged, const GridFrame& frame, con
   return support;
 }
 
-ScalarGrid discontinuityCost(const ScalarGrid& support, double mu) {
+ScalarGrid discontinuityCost(const ScalarGrid& support, double mu, double least) {
   std::vector<Index3> origins;
   for (std::size_t i = 0; i < support.leafCount(); ++i) origins.push_back(support.leaf(i).origin);
   ScalarGrid rho("rho", support.frame(), 1.0f, std::move(origins));
@@ -65,10 +65,12 @@ ScalarGrid discontinuityCost(const ScalarGrid& support, double mu) {
     const auto counts = support.leaf(i).values;
     const auto costs = rho.leaf(i).values;
     std::transform(counts.begin(), counts.end(), costs.begin(),
-                   [mu](float c) { return static_cast<float>(std::exp(-mu * c)); });
+                   [mu, least](float c) { return static_cast<float>(std::max(least, std::exp(-mu * c))); });
   }
-  rho.metadata()["about"] = "rho(x) = exp(-mu C(x)), discontinuity cost (Hernandez et al. 2007, eq. 3)";
+  rho.metadata()["about"] =
+      "rho(x) = max(least_cost, exp(-mu C(x))), discontinuity cost (Hernandez et al. 2007, eq. 3)";
   rho.metadata()["mu"] = std::to_string(mu);
+  rho.metadata()["least_cost"] = std::to_string(least);
   return rho;
 }
 

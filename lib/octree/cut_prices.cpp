@@ -21,7 +21,7 @@ std::int32_t capacityOf(double price) {
 
 double CutPrices::face(std::uint32_t node, std::uint32_t neighbour, double area) const {
   const double agreement = 0.5 * (support[tiles.cells[node]] + support[tiles.cells[neighbour]]);
-  return agreement == 0.0 ? area : std::exp(-options.mu * agreement) * area;  // most faces have none
+  return agreement == 0.0 ? area : options.cost(agreement) * area;  // most faces have none
 }
 
 double CutPrices::volume(std::uint32_t node) const {
@@ -40,7 +40,7 @@ double CutPrices::border(std::uint32_t node) const {
   const auto faces = (low.array() == 0).count() + (high.array() == octree.size.array()).count();
   if (faces == 0) return 0.0;
   const double side = octree.side(cell);
-  return static_cast<double>(faces) * side * side * std::exp(-options.mu * support[cell]);
+  return static_cast<double>(faces) * side * side * options.cost(support[cell]);
 }
 
 void CutPrices::fill(std::uint32_t tile, TileCapacities& values) const {
@@ -78,6 +78,8 @@ NetworkSource cutSource(const Octree& octree, const CellTiles& tiles, const std:
                         const std::vector<float>& sigma, const CutOptions& options) {
   if (!(options.lambda >= 0)) throw InvalidArgument("lambda", "must not be negative");
   if (!(options.mu >= 0)) throw InvalidArgument("mu", "must not be negative");
+  if (!(options.least_cost >= 0 && options.least_cost <= 1))
+    throw InvalidArgument("least_cost", "must lie in [0, 1]");
   NetworkSource source;
   const CutPrices prices{octree, tiles, support, sigma, options};
   source.tiles = tiles.tiles;

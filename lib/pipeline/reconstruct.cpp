@@ -82,6 +82,7 @@ void cutVisibility(const JudgedViews& judged, const Parameters& parameters, cons
                                 cut.arcs,
                                 cut.energy,
                                 cut_options.lambda,
+                                cut_options.least_cost,
                                 evidence_options.thickness,
                                 cut_options.border,
                                 cavities,
@@ -90,7 +91,7 @@ void cutVisibility(const JudgedViews& judged, const Parameters& parameters, cons
                                 surface.completion};
   if (options.grids == ReconstructOptions::Grids::Drop) return;
   result.grids = levelGrids(cells.octree, cells.sigma, "sigma", kUnknown);
-  result.grids.push_back(discontinuityCost(support, options.mu));
+  result.grids.push_back(discontinuityCost(support, cut_options.mu, cut_options.least_cost));
   result.grids.push_back(std::move(support));
   result.grids.push_back(std::move(surface.distance));
 }

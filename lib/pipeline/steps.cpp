@@ -17,6 +17,9 @@ namespace {
 // A default voxel never makes the longest side of the domain longer than this.
 constexpr double kDefaultLongestSide = 512;
 constexpr double kLambdaPerVoxel = 0.6;
+/// ρ₀ where the noise is wider than the voxel. ρ₀/λ, the width of a fold that evidence 1 just pays for, is
+/// then ⅔ of the noise whatever the voxel.
+constexpr double kLeastCostOfNoise = 0.4;
 constexpr double kThicknessPerDiagonal = 0.11;
 
 double scaleAtExponent(const NoiseLaw& law, double typical, int exponent) {
@@ -49,6 +52,8 @@ std::vector<std::string> validate(const ReconstructOptions& options) {
   require(!options.outliers || (*options.outliers >= 0 && *options.outliers < 1),
           "outliers must lie in [0, 1)");
   require(options.mu >= 0 && options.lambda >= 0, "mu and lambda must not be negative");
+  require(!options.least_cost || (*options.least_cost >= 0 && *options.least_cost <= 1),
+          "least_cost must lie in [0, 1]");
   require(options.smoothing_voxels >= 0 && options.smoothing_voxels <= 2,
           "smoothing_voxels must lie in [0, 2]");
   require(options.trim >= 0, "trim must not be negative");
@@ -177,9 +182,11 @@ OctreeOptions octreeOptions(const GridFrame& frame, const CalibrationReport& cal
 CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFrame& frame,
                       const CalibrationReport& calibration, const ReconstructOptions& options) {
   CutOptions cut;
+  const double noise = calibration.noise_scale, scale = std::max(frame.voxel, noise);
   cut.mu = options.mu;
-  cut.lambda =
-      options.lambda > 0 ? options.lambda : kLambdaPerVoxel / std::max(frame.voxel, calibration.noise_scale);
+  const bool is_ours = options.evidence.rule == EvidenceRule::Outside;
+  cut.least_cost = options.least_cost.value_or(is_ours ? kLeastCostOfNoise * noise / scale : 0.0);
+  cut.lambda = options.lambda > 0 ? options.lambda : kLambdaPerVoxel / scale;
   const std::vector<Eigen::Vector3d> sensors = sensorPositions(judged);
   cut.border = options.border.value_or(chooseBorder(countInside(sensors, domain), sensors.size()));
   return cut;

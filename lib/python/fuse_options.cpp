@@ -91,6 +91,7 @@ Options energyOptions() {
       {"mask_error", [](R& r, const V& v) { r.options.evidence.mask_error = shareIn(v, 1e-6, 0.5); }},
       {"thickness", setThickness},
       {"depth_prior", [](R& r, const V& v) { r.options.prior_decay = v.positive(); }},
+      {"least_cost", [](R& r, const V& v) { r.options.least_cost = notNegative(v); }},
       {"lambda_", [](R& r, const V& v) { r.options.lambda = v.positive(); }},
       {"mu", [](R& r, const V& v) { r.options.mu = notNegative(v); }},
   };

@@ -37,7 +37,7 @@ std::vector<float> cubePrices(const BlockSet& blocks, const std::vector<float>& 
         sum += std::max(value, 0.0f);
       }
       const bool is_free = is_beyond && energy.border == Border::Free;
-      prices[b * kBlockSize + i] = is_free ? 0.0f : std::exp(-static_cast<float>(energy.mu) * sum / 8);
+      prices[b * kBlockSize + i] = is_free ? 0.0f : static_cast<float>(energy.cost(sum / 8));
     }
   });
   return prices;

@@ -121,6 +121,8 @@ TEST(DiscontinuityCost, IsTheExponentialOfTheCount) {
   EXPECT_FLOAT_EQ(rho.at({9, 10, 11}), std::exp(-3.0f));
   EXPECT_EQ(rho.at({0, 0, 0}), 1.0f);
   EXPECT_EQ(rho.at({100, 0, 0}), 1.0f);
+  EXPECT_EQ(discontinuityCost(support, 2.0, 0.25).at({9, 10, 11}), 0.25f);
+  EXPECT_EQ(discontinuityCost(support, 2.0, 0.04).at({9, 10, 11}), rho.at({9, 10, 11}));
 }
 
 }  // namespace

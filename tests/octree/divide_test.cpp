@@ -30,7 +30,7 @@ struct Besieged {
   static constexpr int kSide = 12, kLow = 4, kCube = 4;
   Octree octree = block({kSide, kSide, kSide});
   std::vector<float> support, sigma;
-  CutOptions options{2.0, 0.9, 10.0, Border::Free};
+  CutOptions options{.mu = 2.0, .lambda = 0.9, .max_evidence = 10.0, .border = Border::Free};
 
   // Of the cube: `evidence` or stronger. Around it: whatever, mostly against it.
   Besieged(std::uint64_t seed, float evidence, double mostly) {

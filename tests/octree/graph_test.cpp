@@ -74,6 +74,9 @@ double energyByVoxels(const Octree& octree, const std::vector<CellLabel>& labels
   const double h = octree.frame.voxel;
   double energy = 0;
   const auto isInside = [&](std::size_t c) { return labels[c] == CellLabel::Inside; };
+  const auto priceOf = [&](double agreement) {
+    return std::max(options.least_cost, std::exp(-options.mu * agreement));
+  };
   forEachVoxel(octree, [&](const Index3& v) {
     const std::size_t here = *octree.find(v);
     if (isInside(here))
@@ -82,11 +85,11 @@ double energyByVoxels(const Octree& octree, const std::vector<CellLabel>& labels
     for (int n = 0; n < 6; ++n) {
       const auto there = octree.find(v + Index3((n % 2 == 0 ? 1 : -1) * Index3::Unit(n / 2)));
       if (there && n % 2 == 0 && isInside(here) != isInside(*there))
-        energy += h * h * std::exp(-options.mu * 0.5 * (support[here] + support[*there]));
+        energy += h * h * priceOf(0.5 * (support[here] + support[*there]));
       const bool differs_from_beyond = options.border == Border::Outside
                                            ? isInside(here)
                                            : options.border == Border::Solid && !isInside(here);
-      if (!there && differs_from_beyond) energy += h * h * std::exp(-options.mu * support[here]);
+      if (!there && differs_from_beyond) energy += h * h * priceOf(support[here]);
     }
   });
   return energy;
@@ -117,6 +120,7 @@ struct TinyProblem {
       sigma.push_back(static_cast<float>(random.uniform(-12, 12)));
     }
     options.lambda = random.uniform(0.01, 0.4) / octree.frame.voxel;
+    options.least_cost = seed < 3 ? 0.0 : 0.3;
     options.border = std::array{Border::Outside, Border::Solid, Border::Free}[seed % 3];
   }
   std::vector<std::pair<std::uint64_t, std::uint8_t>> cells;
@@ -257,8 +261,10 @@ TEST(CutSource, IntegersKeepDensitiesToOnePerCentAtEveryLevel) {
 
 TEST(CutCells, NegativeWeightsAreRefused) {
   const Block b;
-  EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {-1.0, 1.0}), InvalidArgument);
-  EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {1.0, -1.0}), InvalidArgument);
+  EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {.mu = -1.0, .lambda = 1.0}), InvalidArgument);
+  EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {.lambda = -1.0}), InvalidArgument);
+  for (const double cost : {-0.1, 1.1})
+    EXPECT_THROW(cutCells(b.octree, b.tiles, b.support, b.sigma, {.least_cost = cost}), InvalidArgument);
 }
 
 // A solid shell around a hollow of the cell in the middle of a uniform grid of 5³ finest cells.

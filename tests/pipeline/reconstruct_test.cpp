@@ -58,6 +58,18 @@ TEST(Reconstruct, ANoisySphereIsOneClosedSphereOfTheRightSize) {
                                           "evidence", "cut", "surface"));
 }
 
+TEST(Reconstruct, VoxelsFinerThanTheNoiseMakeNoHandles) {
+  std::vector<View> views = test::sphereViews(30, 96);
+  test::addNoise(views, {0.015, 0, 0}, 6);
+  ReconstructOptions options;
+  options.voxel = 0.006;
+  const TriangleMesh with_tension = run(views, options).mesh;
+  EXPECT_EQ(topology(with_tension).components, 1u);
+  EXPECT_EQ(topology(with_tension).euler_number, 2);
+  options.least_cost = 0.0;
+  EXPECT_LT(topology(run(views, options).mesh).euler_number, 0);
+}
+
 TEST(Reconstruct, IsTheSameMeshToTheLastBitForOneAndTwoThreads) {
   for (const Method method : {Method::Visibility, Method::Tsdf}) {
     ReconstructOptions options = coarse();
@@ -193,8 +205,9 @@ TEST(ReconstructOptions, EverythingThatIsWrongIsReported) {
   EXPECT_TRUE(validate(options).empty());
   options.voxel = -1, options.resolution = -1, options.domain = Box(), options.max_level = 7;
   options.noise_scale = NAN, options.outliers = 1.0, options.mu = -1, options.smoothing_voxels = 3;
-  options.tsdf.truncation = -1, options.evidence.visibility_prior = 0, options.window_px = -1;
-  EXPECT_EQ(validate(options).size(), 12u);
+  options.least_cost = 1.5, options.tsdf.truncation = -1, options.evidence.visibility_prior = 0,
+  options.window_px = -1;
+  EXPECT_EQ(validate(options).size(), 13u);
 }
 
 }  // namespace

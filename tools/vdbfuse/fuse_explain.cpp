@@ -76,6 +76,11 @@ void addCut(const Run& run, std::vector<FoundValue>& found) {
   const Parameters& p = run.parameters;
   const double diagonal = p.domain.diagonal().norm();
   found.push_back({"lambda", number(p.cut.lambda), whyLambda(run)});
+  if (!run.request.reconstruct.least_cost)
+    found.push_back({"least-cost", number(p.cut.least_cost),
+                     run.request.reconstruct.evidence.rule == EvidenceRule::Outside
+                         ? "0.4 x noise/max(voxel, noise)"
+                         : "none, as in the literature"});
   if (run.request.border == "auto")
     found.push_back({"border", nameOf(p.cut.border),
                      text("%zu of %zu sensors are inside the domain", p.sensors_inside, p.sensors)});

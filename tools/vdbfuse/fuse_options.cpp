@@ -73,6 +73,11 @@ void addEnergyOptions(CLI::App& app, FuseRequest& r) {
       ->check(numberBetween(1e-6, 0.499))
       ->type_name("SHARE")
       ->capture_default_str();
+  app.add_option("--least-cost", o.least_cost,
+                 "Cost of a surface however many views agree; larger: fewer folds within the noise")
+      ->check(numberBetween(0, 1))
+      ->type_name("NUMBER")
+      ->option_text("0.4 x noise/max(voxel, noise); 0 unless --rule outside");
   app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap: a cost of e^(-mu x agreeing views)")
       ->type_name("NUMBER")
       ->capture_default_str();

@@ -69,6 +69,7 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
   if (result.cut)
     j.update({{"completion", result.cut->completion ? "isotropic" : "none"},
               {"lambda", result.cut->lambda},
+              {"least_cost", result.cut->least_cost},
               {"thickness", result.cut->thickness},
               {"border", nameOf(result.cut->border)}});
   return j;

@@ -19,7 +19,7 @@ inline constexpr float kSupported = 0.3f;
 ScalarGrid countAgreement(const JudgedViews& judged, const GridFrame& frame, const Box& domain,
                           const Progress& progress = {});
 
-/// ρ = e^(−μ C): grid "rho", background 1.
-ScalarGrid discontinuityCost(const ScalarGrid& support, double mu);
+/// ρ = max(ρ₀, e^(−μ C)) (Hernández et al. 2007, eq. 3), ρ₀ = `least`: grid "rho", background 1.
+ScalarGrid discontinuityCost(const ScalarGrid& support, double mu, double least = 0.0);
 
 }  // namespace vdbfuse

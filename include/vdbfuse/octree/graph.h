@@ -3,6 +3,8 @@
 // 1), in which V(S) is the solid.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -25,11 +27,17 @@ enum class Border {
 const char* nameOf(Border border);
 
 struct CutOptions {
-  double mu = 2.0;      ///< ρ = e^(−μ C): where two reliable views agree a surface costs next to nothing
+  double mu = 2.0;  ///< ρ = max(ρ₀, e^(−μ C)): where two reliable views agree a surface costs next to nothing
+  /// ρ₀ in [0, 1], what a surface costs however many views agree. Without it folds and handles within the
+  /// noise cost nothing where voxels are smaller than the noise; with it the surface has a tension.
+  double least_cost = 0.0;
   double lambda = 0.0;  ///< weight of σ, 1/length; a part of thickness τ survives if λ |σ| τ ≥ 2ρ
   double max_evidence =
       10.0;  ///< |σ| is clamped to this, so that no place is beyond the reach of its surroundings
   Border border = Border::Outside;
+
+  /// ρ where C = `agreement` views agree, eq. (3).
+  double cost(double agreement) const { return std::max(least_cost, std::exp(-mu * agreement)); }
 };
 
 struct CutEnergy {
@@ -46,7 +54,7 @@ struct Labelling {
 };
 
 /// The global minimum of (1) with the face-sharing graph's metric. `support`: C at each cell; `sigma`:
-/// evidence. ρ at a face is e^(−μ C) with C the mean of both sides. Among minimal solids the smallest is
+/// evidence. ρ at a face is that of C, the mean of both sides. Among minimal solids the smallest is
 /// returned. `tiles` are tileCells(octree). REQUIRES: arrays of octree.cellCount() values.
 Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
                    const std::vector<float>& sigma, const CutOptions& options, const Progress& progress = {});
@@ -54,7 +62,8 @@ Labelling cutCells(const Octree& octree, const CellTiles& tiles, const std::vect
 /// The network of that cut: what cutCells() solves. Refers to its arguments. Capacities are integers, 2¹⁵
 /// units per h² of ρ and at least one, for all levels alike: the six faces of a cell of 64 voxels a side stay
 /// below 2³⁰, and ρ down to e^(−6), λ|σ|h down to 0.002 are kept to 1 % at the finest level, on coarser ones
-/// smaller values still. Throws InvalidArgument for a negative lambda or mu.
+/// smaller values still. Throws InvalidArgument for a negative lambda or mu and for a least cost outside [0,
+/// 1].
 NetworkSource cutSource(const Octree& octree, const CellTiles& tiles, const std::vector<float>& support,
                         const std::vector<float>& sigma, const CutOptions& options);
 

@@ -69,7 +69,10 @@ struct ReconstructOptions {
 
   // The energy.
   EvidenceOptions evidence;
-  double mu = 2.0;  ///< ρ = e^(−μ C); larger: thin parts hold better, mistakes cost less
+  double mu = 2.0;  ///< ρ = max(ρ₀, e^(−μ C)); larger: thin parts hold better, mistakes cost less
+  /// ρ₀ (CutOptions::least_cost); default 0.4 × median noise/max(voxel, median noise), and 0 for the rules
+  /// of the literature, which have none.
+  std::optional<double> least_cost;
   /// Takes the place of evidence.thickness; default: 0.11 × diagonal of the domain. 0: off.
   std::optional<double> thickness;
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.6/max(voxel, median noise)
@@ -125,6 +128,7 @@ struct CutReportSummary {
   std::size_t nodes = 0, arcs = 0;
   CutEnergy energy;
   double lambda = 0;
+  double least_cost = 0;
   double thickness = 0;  ///< EvidenceOptions::thickness; 0: off
   Border border = Border::Outside;
   CavityReport cavities;

@@ -205,7 +205,7 @@ def fuse(
     rule: _Rule | None = None, visibility_prior: float | None = None, visibility: float | None = None,
     prior: float | None = None, balloon: float | None = None, mask_error: float | None = None,
     thickness: float | Literal["auto", "off"] | None = None, depth_prior: float | None = None, lambda_: float | None = None,
-    mu: float | None = None, smoothing_voxels: float | None = None, completion: Literal["isotropic", "none"] | None = None,
+    least_cost: float | None = None, mu: float | None = None, smoothing_voxels: float | None = None, completion: Literal["isotropic", "none"] | None = None,
     trim: float | None = None, min_component: float | None = None, simplify: int | None = None,
     truncation: float | Literal["auto", "outliers"] | None = None, continue_: _Path | None = None, carve: bool | None = None,
     weights: Sequence[_Weight] | str | None = None, min_weight: float | None = None, close_gaps: int | None = None,
