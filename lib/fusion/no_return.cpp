@@ -103,7 +103,8 @@ class BorderFill {
 
 }  // namespace
 
-Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& outlier) {
+Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& outlier,
+                                 const Image<std::uint8_t>& missed) {
   constexpr float kProbablyWrong = 0.75f;
   Image<std::uint8_t> missing(depth.width(), depth.height()), passable(depth.width(), depth.height());
   for (std::size_t p = 0; p < depth.size(); ++p) {
@@ -116,6 +117,11 @@ Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& 
   Image<std::uint8_t> squares = filterSquare(passable, all);
   const Image<std::uint8_t> mostly_missing = filterSquare(missing, most);
   std::transform(squares.begin(), squares.end(), mostly_missing.begin(), squares.begin(), std::bit_and<>());
+  if (!missed.empty()) {
+    const auto few = [](int ones, int pixels) { return static_cast<std::uint8_t>(16 * ones <= pixels); };
+    const Image<std::uint8_t> unseen = filterSquare(missed, few);
+    std::transform(squares.begin(), squares.end(), unseen.begin(), squares.begin(), std::bit_and<>());
+  }
   return BorderFill(filterSquare(squares, any)).fill();
 }
 

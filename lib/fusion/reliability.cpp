@@ -8,6 +8,7 @@
 #include "fusion/alternatives.h"
 #include "fusion/denial.h"
 #include "fusion/learn_reliability.h"
+#include "fusion/missed_surfaces.h"
 #include "fusion/pixel_testimony.h"
 #include "vdbfuse/base/parallel.h"
 #include "vdbfuse/fusion/domain.h"
@@ -56,6 +57,11 @@ bool trustNoReturn(std::vector<double> border_shares, JudgeOptions::NoReturn rul
   return *middle > kMostOfTheBorder;
 }
 
+void setLook(const Image<std::uint8_t>& empty, JudgedView& view) {
+  std::transform(empty.begin(), empty.end(), view.look.begin(),
+                 [](std::uint8_t is_empty) { return is_empty ? Look::Empty : Look::Nothing; });
+}
+
 // A view with a mask needs no guess: what is missing inside its silhouette is a hole in the measurements.
 void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoReturn rule,
                   std::vector<JudgedView>& views) {
@@ -65,8 +71,7 @@ void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoRetu
     JudgedView& view = views[unmasked[k]];
     const Image<std::uint8_t> empty = emptyRegions(view.depth, view.outlier);
     border_shares[k] = borderShare(empty);
-    std::transform(empty.begin(), empty.end(), view.look.begin(),
-                   [](std::uint8_t is_empty) { return is_empty ? Look::Empty : Look::Nothing; });
+    setLook(empty, view);
     letGo(view);
   });
   if (trustNoReturn(std::move(border_shares), rule)) return;
@@ -74,6 +79,26 @@ void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoRetu
     std::fill(views[i].look.begin(), views[i].look.end(), Look::Nothing);
     letGo(views[i]);
   }
+}
+
+// Takes back what was called empty where others measured a surface; all of it in views that missed so much.
+void takeBackMissed(const std::vector<std::size_t>& order,
+                    const std::vector<std::vector<std::size_t>>& neighbours, std::vector<JudgedView>& views) {
+  const Neighbourhoods around{order, neighbours, windowBytes(views.front().memory()),
+                              [&](std::size_t i) { return imageBytes(views[i]); },
+                              [&](std::size_t i) { letGo(views[i]); }};
+  forEachNeighbourhood(around, [&](std::size_t i) {
+    constexpr double kMissesTooMuch = 0.2;  // of the surface that it might have met
+    JudgedView& view = views[i];
+    const auto before = std::count(view.look.begin(), view.look.end(), Look::Empty);
+    if (before == 0) return;
+    setLook(emptyRegions(view.depth, view.outlier, missedSurfaces(views, i, neighbours[i])), view);
+    const auto missed = before - std::count(view.look.begin(), view.look.end(), Look::Empty);
+    const auto without = std::count(view.depth.begin(), view.depth.end(), kInvalidDepth);
+    const auto met = static_cast<std::ptrdiff_t>(view.depth.size()) - without;
+    if (static_cast<double>(missed) > kMissesTooMuch * static_cast<double>(missed + met))
+      std::fill(view.look.begin(), view.look.end(), Look::Nothing);
+  });
 }
 
 std::vector<std::size_t> viewsWithoutMask(const std::vector<View>& views) {
@@ -105,6 +130,8 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
   const std::vector<Image<std::uint8_t>> confidence = bins.replace(views);
   std::vector<std::vector<std::size_t>> neighbours = chooseNeighbours(graph, count, options.neighbours);
   std::vector<std::size_t> order = pathThrough(graph, count);
+  const std::vector<std::vector<std::size_t>> around = neighbours;  // without alternatives
+  const std::vector<std::size_t> path = order;
   const AlternativeViews alternatives(views);
   alternatives.extend(neighbours);
   for (std::size_t i = count; i < views.size(); ++i) order.push_back(i);
@@ -134,6 +161,7 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     setOutliers(testimonies, confidence, table, judged.views);
     setNoReturns(unmasked, options.no_return, judged.views);
   }
+  if (options.no_return == JudgeOptions::NoReturn::Auto) takeBackMissed(path, around, judged.views);
   for (std::size_t i = 0; i < count; ++i) {
     weighAlternatives(alternatives, i, testimonies, confidence[i], table, surfaces, judged.views[i]);
     letGo(judged.views[i]), letGo(confidence[i]);

@@ -25,7 +25,7 @@ Parameters resolveParameters(const JudgedScan& scan, const ReconstructOptions& o
   p.domain = options.domain.value_or(scan.judgement.domain);
   const VoxelChoice voxel = chooseVoxel(p.domain, calibration, options);
   p.voxel = voxel.size, p.voxel_from = voxel.from;
-  p.evidence = evidenceOptions(p.domain, options);
+  p.evidence = evidenceOptions(scan.judgement.judged, p.domain, options);
   p.cut = cutOptions(scan.judgement.judged, p.domain, GridFrame{p.voxel}, calibration, options);
   const std::vector<Eigen::Vector3d> sensors = sensorPositions(scan.judgement.judged);
   p.sensors = sensors.size(), p.sensors_inside = countInside(sensors, p.domain);

@@ -83,6 +83,7 @@ void cutVisibility(const JudgedViews& judged, const Parameters& parameters, cons
                                 cut.energy,
                                 cut_options.lambda,
                                 cut_options.least_cost,
+                                evidence_options.visibility_prior,
                                 evidence_options.thickness,
                                 cut_options.border,
                                 cavities,

@@ -50,7 +50,8 @@ CutOptions cutOptions(const JudgedViews& judged, const Box& domain, const GridFr
 double leastWidth(const std::vector<int>& reduction, const CalibrationReport& calibration,
                   const ReconstructOptions& options);
 
-EvidenceOptions evidenceOptions(const Box& domain, const ReconstructOptions& options);
+EvidenceOptions evidenceOptions(const JudgedViews& judged, const Box& domain,
+                                const ReconstructOptions& options);
 
 std::size_t countInside(const std::vector<Eigen::Vector3d>& points, const Box& box);
 

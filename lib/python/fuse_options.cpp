@@ -84,7 +84,7 @@ Options energyOptions() {
                                      {"no-self-occlusion", EvidenceRule::NoSelfOcclusion},
                                      {"constant", EvidenceRule::Constant}});
        }},
-      {"visibility_prior", [](R& r, const V& v) { r.options.evidence.visibility_prior = v.positive(); }},
+      {"visibility_prior", [](R& r, const V& v) { r.options.visibility_prior = v.positive(); }},
       {"visibility", [](R& r, const V& v) { r.options.evidence.visibility = shareIn(v, 0, 1); }},
       {"prior", [](R& r, const V& v) { r.options.evidence.prior = v.number(); }},
       {"balloon", [](R& r, const V& v) { r.options.evidence.balloon = v.number(); }},

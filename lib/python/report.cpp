@@ -26,10 +26,10 @@ py::dict gridOf(const GridReport& grid) {
 py::dict cutOf(const CutReportSummary& cut) {
   return py::dict("flow"_a = cut.flow, "certified"_a = cut.certified, "nodes"_a = cut.nodes,
                   "arcs"_a = cut.arcs, "lambda"_a = cut.lambda, "least_cost"_a = cut.least_cost,
-                  "thickness"_a = cut.thickness, "border"_a = nameOf(cut.border),
-                  "cavities_filled"_a = cut.cavities.filled, "cavities_volume"_a = cut.cavities.volume,
-                  "specks_removed"_a = cut.specks.removed, "specks_volume"_a = cut.specks.volume,
-                  "unresolved_removed"_a = cut.unresolved);
+                  "visibility_prior"_a = cut.visibility_prior, "thickness"_a = cut.thickness,
+                  "border"_a = nameOf(cut.border), "cavities_filled"_a = cut.cavities.filled,
+                  "cavities_volume"_a = cut.cavities.volume, "specks_removed"_a = cut.specks.removed,
+                  "specks_volume"_a = cut.specks.volume, "unresolved_removed"_a = cut.unresolved);
 }
 
 py::dict energyOf(const CutEnergy& energy) {

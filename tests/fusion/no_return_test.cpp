@@ -69,6 +69,19 @@ TEST(NoReturn, NothingButDepthsThatAreProbablyWrongIsNotEmpty) {
   EXPECT_EQ(borderShare(emptyRegions(depth, outlier)), 0.0);
 }
 
+TEST(NoReturn, WhereOthersMeasuredASurfaceIsAHole) {
+  const Image<float> depth = boxImage();
+  Image<std::uint8_t> missed(60, 50, 0);
+  EXPECT_EQ(emptyRegions(depth, {}, missed), emptyRegions(depth));
+  missed(5, 25) = missed(3, 20) = 1;  // a few wrong pixels
+  EXPECT_EQ(emptyRegions(depth, {}, missed), emptyRegions(depth));
+  for (int y = 0; y < 50; y += 2)
+    for (int x = 0; x < 12; x += 2) missed(x, y) = 1;
+  const Image<std::uint8_t> empty = emptyRegions(depth, {}, missed);
+  for (int y = 0; y < 50; ++y) ASSERT_EQ(empty(5, y), 0) << y;
+  for (int y = 0; y < 50; ++y) ASSERT_EQ(empty(54, y), 1) << y;
+}
+
 TEST(NoReturn, FullAndTinyImagesAreNoTrouble) {
   EXPECT_EQ(borderShare(emptyRegions(Image<float>(3, 2, kInvalidDepth))), 1.0);
   EXPECT_EQ(borderShare(emptyRegions(Image<float>(3, 2, 1.0f))), 0.0);

@@ -141,7 +141,7 @@ TEST(Judge, NoReturnsMeanEmptySpaceAroundAnObjectUnlessToldOtherwise) {
 
 TEST(Judge, AMaskSaysWhereTheObjectIsAndWhatIsMissingInsideItIsAHole) {
   Planted planted(Confidence::None, 0.0);
-  // A dark patch that reaches the silhouette: without a mask nothing tells it from empty space.
+  // A dark patch that reaches the silhouette.
   for (View& view : planted.views) {
     DepthMap& map = view.map;
     map.mask = Image<std::uint8_t>(64, 64);
@@ -157,7 +157,11 @@ TEST(Judge, AMaskSaysWhereTheObjectIsAndWhatIsMissingInsideItIsAHole) {
       ASSERT_EQ(view.look.data()[p], object ? Look::Nothing : Look::Outside);
     }
   for (View& view : planted.views) view.map.mask = {};
-  EXPECT_EQ(planted.judged().judged.views[0].look(10, 32), Look::Empty);
+  // Without a mask the others do, who see what lies there.
+  EXPECT_EQ(planted.judged().judged.views[0].look(10, 32), Look::Nothing);
+  JudgeOptions options;
+  options.no_return = JudgeOptions::NoReturn::Free;  // whoever says so is believed
+  EXPECT_EQ(planted.judged(options).judged.views[0].look(10, 32), Look::Empty);
 }
 
 TEST(Judge, ADepthOutsideTheMaskIsBackground) {

@@ -35,7 +35,7 @@ TEST(CoarseToFine, CellsAtBoundariesOfVisibilityAreDividedAndOnlyTheNewOnesEvalu
   const GridFrame frame{reconstruct.voxel};
   const ScalarGrid support = countAgreement(judged, frame, scan.judgement.domain);
   const Octree octree = buildOctree(support, kSupported, scan.judgement.domain);
-  const EvidenceOptions evidence_options = evidenceOptions(scan.judgement.domain, reconstruct);
+  const EvidenceOptions evidence_options = evidenceOptions(judged, scan.judgement.domain, reconstruct);
   const CellsWithEvidence cells =
       evaluateFromCoarseToFine(judged, support, octree, evidence_options, {75.0}, {});
   EXPECT_GT(cells.octree.cellCount(), octree.cellCount());

@@ -91,7 +91,7 @@ inline DecidedCells solveBothWays(const JudgedScan& scan, const ReconstructOptio
   const GridFrame frame = chooseFrame(domain, scan.calibration, options);
   const ScalarGrid support = countAgreement(judged, frame, domain);
   const CutOptions cut = cutOptions(judged, domain, frame, scan.calibration, options);
-  const EvidenceOptions evidence_options = evidenceOptions(domain, options);
+  const EvidenceOptions evidence_options = evidenceOptions(judged, domain, options);
   const DivideOptions divide{cut.lambda, cut.max_evidence};
   const CellsWithEvidence cells = evaluateFromCoarseToFine(
       judged, support,

@@ -206,8 +206,8 @@ TEST(ReconstructOptions, EverythingThatIsWrongIsReported) {
   options.voxel = -1, options.resolution = -1, options.domain = Box(), options.max_level = 7;
   options.noise_scale = NAN, options.outliers = 1.0, options.mu = -1, options.smoothing_voxels = 3;
   options.least_cost = 1.5, options.tsdf.truncation = -1, options.evidence.visibility_prior = 0,
-  options.window_px = -1;
-  EXPECT_EQ(validate(options).size(), 13u);
+  options.visibility_prior = 0, options.window_px = -1;
+  EXPECT_EQ(validate(options).size(), 14u);
 }
 
 }  // namespace

@@ -76,6 +76,9 @@ void addCut(const Run& run, std::vector<FoundValue>& found) {
   const Parameters& p = run.parameters;
   const double diagonal = p.domain.diagonal().norm();
   found.push_back({"lambda", number(p.cut.lambda), whyLambda(run)});
+  if (!run.request.reconstruct.visibility_prior)
+    found.push_back({"visibility-prior", number(p.evidence.visibility_prior),
+                     "1 for 8 views or fewer, 0.5 for 24 or more; repetitions count by their weights"});
   if (!run.request.reconstruct.least_cost)
     found.push_back({"least-cost", number(p.cut.least_cost),
                      run.request.reconstruct.evidence.rule == EvidenceRule::Outside

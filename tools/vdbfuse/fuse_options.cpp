@@ -40,10 +40,11 @@ void addEnergyOptions(CLI::App& app, FuseRequest& r) {
   addChoice(app, "--method", o.method, kMethods,
             "Global minimum cut, or signed distances (Curless and Levoy)");
   addChoice(app, "--rule", o.evidence.rule, kRules, "How the views' testimony is combined");
-  app.add_option("--visibility-prior", o.evidence.visibility_prior, "a of the prior Beta(v; a, 1)")
+  app.add_option("--visibility-prior", o.visibility_prior,
+                 "a of the prior Beta(v; a, 1); smaller: outside may be seen by fewer views")
       ->check(positiveNumber())
       ->type_name("NUMBER")
-      ->capture_default_str();
+      ->option_text("1 for 8 views or fewer, 0.5 for 24 or more");
   app.add_option("--visibility", o.evidence.visibility, "One visibility v in place of the prior")
       ->check(numberBetween(0.0, 1.0))
       ->type_name("SHARE")

@@ -48,7 +48,6 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
             {"denial", o.judge.denial == JudgeOptions::Denial::Examine ? "examine" : "skip"},
             {"judgement", context.judgement.empty() ? Json(nullptr) : Json(context.judgement.string())},
             {"rule", nameOf(o.evidence.rule)},
-            {"visibility_prior", o.evidence.visibility_prior},
             {"visibility", o.evidence.visibility},
             {"prior", o.evidence.prior},
             {"balloon", o.evidence.balloon},
@@ -68,6 +67,7 @@ Json optionsJson(const Reconstruction& result, const FuseContext& context) {
               {"trim_rim", o.tsdf.trim_rim}});
   if (result.cut)
     j.update({{"completion", result.cut->completion ? "isotropic" : "none"},
+              {"visibility_prior", result.cut->visibility_prior},
               {"lambda", result.cut->lambda},
               {"least_cost", result.cut->least_cost},
               {"thickness", result.cut->thickness},

@@ -17,7 +17,7 @@ struct Parameters {
   double voxel = 0;
   VoxelFrom voxel_from = VoxelFrom::Voxel;
   Box domain;
-  EvidenceOptions evidence;                     ///< with the thickness
+  EvidenceOptions evidence;                     ///< with a and the thickness
   CutOptions cut;                               ///< with λ, ρ₀ and the border
   std::size_t sensors = 0, sensors_inside = 0;  ///< of the domain: more than half of them make a solid border
   double truncation = 0;                        ///< of Method::Tsdf, length

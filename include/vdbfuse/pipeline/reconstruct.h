@@ -73,6 +73,9 @@ struct ReconstructOptions {
   /// ρ₀ (CutOptions::least_cost); default 0.4 × median noise/max(voxel, median noise), and 0 for the rules
   /// of the literature, which have none.
   std::optional<double> least_cost;
+  /// Takes the place of evidence.visibility_prior; default: 1 for 8 views or fewer, ½ for 24 or more, linear
+  /// between; views that repeat others count by their weights.
+  std::optional<double> visibility_prior;
   /// Takes the place of evidence.thickness; default: 0.11 × diagonal of the domain. 0: off.
   std::optional<double> thickness;
   double lambda = 0.0;  ///< weight of σ, 1/length; default 0.6/max(voxel, median noise)
@@ -129,7 +132,8 @@ struct CutReportSummary {
   CutEnergy energy;
   double lambda = 0;
   double least_cost = 0;
-  double thickness = 0;  ///< EvidenceOptions::thickness; 0: off
+  double visibility_prior = 0;  ///< EvidenceOptions::visibility_prior
+  double thickness = 0;         ///< EvidenceOptions::thickness; 0: off
   Border border = Border::Outside;
   CavityReport cavities;
   SpeckReport specks;          ///< smaller than a cube of the noise, or of the window
