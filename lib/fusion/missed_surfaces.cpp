@@ -14,8 +14,9 @@ constexpr float kReliable = 0.2f;
 
 class MissedSurfaces {
  public:
-  explicit MissedSurfaces(const JudgedView& view)
+  MissedSurfaces(const JudgedView& view, const Box& domain)
       : view_(view),
+        domain_(domain),
         projector_(view.projection, view.world_from_camera),
         missed_(view.depth.width(), view.depth.height()) {}
 
@@ -24,7 +25,9 @@ class MissedSurfaces {
     for (int y = 0; y < depth.height(); y += kStep) {
       for (int x = 0; x < depth.width(); x += kStep) {
         if (depth(x, y) == kInvalidDepth || other.outlier(x, y) >= kReliable) continue;
-        points_.push_back(other.world_from_camera * unproject(other.projection, x, y, depth(x, y)));
+        const Eigen::Vector3d point =
+            other.world_from_camera * unproject(other.projection, x, y, depth(x, y));
+        if (domain_.contains(point)) points_.push_back(point);
         if (points_.size() == PointBlock::kCapacity) lookUp();
       }
     }
@@ -49,6 +52,7 @@ class MissedSurfaces {
   }
 
   const JudgedView& view_;
+  const Box& domain_;
   Projector projector_;
   std::vector<Eigen::Vector3d> points_;
   Image<std::uint8_t> missed_;
@@ -57,8 +61,8 @@ class MissedSurfaces {
 }  // namespace
 
 Image<std::uint8_t> missedSurfaces(const std::vector<JudgedView>& views, std::size_t index,
-                                   const std::vector<std::size_t>& neighbours) {
-  MissedSurfaces missed(views[index]);
+                                   const std::vector<std::size_t>& neighbours, const Box& domain) {
+  MissedSurfaces missed(views[index], domain);
   for (const std::size_t other : neighbours) missed.lookFor(views[other]);
   return missed.take();
 }

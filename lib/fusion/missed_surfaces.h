@@ -4,14 +4,16 @@
 
 #include <vector>
 
+#include "vdbfuse/geometry/box.h"
 #include "vdbfuse/geometry/image.h"
 #include "vdbfuse/sensor/judged_view.h"
 
 namespace vdbfuse {
 
-/// Pixels without a depth on whose rays `neighbours` measured something reliable (ε < 0.2): view `index`
-/// should have met it, or whatever hides it. Every second pixel of each second row of theirs is looked up.
+/// Pixels without a depth on whose rays `neighbours` measured something reliable (ε < 0.2) inside `domain`:
+/// view `index` should have met it, or whatever hides it. What lies beyond may be out of its reach. Every
+/// second pixel of each second row of theirs is looked up.
 Image<std::uint8_t> missedSurfaces(const std::vector<JudgedView>& views, std::size_t index,
-                                   const std::vector<std::size_t>& neighbours);
+                                   const std::vector<std::size_t>& neighbours, const Box& domain);
 
 }  // namespace vdbfuse

@@ -83,7 +83,8 @@ void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoRetu
 
 // Takes back what was called empty where others measured a surface; all of it in views that missed so much.
 void takeBackMissed(const std::vector<std::size_t>& order,
-                    const std::vector<std::vector<std::size_t>>& neighbours, std::vector<JudgedView>& views) {
+                    const std::vector<std::vector<std::size_t>>& neighbours, const Box& domain,
+                    std::vector<JudgedView>& views) {
   const Neighbourhoods around{order, neighbours, windowBytes(views.front().memory()),
                               [&](std::size_t i) { return imageBytes(views[i]); },
                               [&](std::size_t i) { letGo(views[i]); }};
@@ -92,7 +93,7 @@ void takeBackMissed(const std::vector<std::size_t>& order,
     JudgedView& view = views[i];
     const auto before = std::count(view.look.begin(), view.look.end(), Look::Empty);
     if (before == 0) return;
-    setLook(emptyRegions(view.depth, view.outlier, missedSurfaces(views, i, neighbours[i])), view);
+    setLook(emptyRegions(view.depth, view.outlier, missedSurfaces(views, i, neighbours[i], domain)), view);
     const auto missed = before - std::count(view.look.begin(), view.look.end(), Look::Empty);
     const auto without = std::count(view.depth.begin(), view.depth.end(), kInvalidDepth);
     const auto met = static_cast<std::ptrdiff_t>(view.depth.size()) - without;
@@ -161,7 +162,8 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     setOutliers(testimonies, confidence, table, judged.views);
     setNoReturns(unmasked, options.no_return, judged.views);
   }
-  if (options.no_return == JudgeOptions::NoReturn::Auto) takeBackMissed(path, around, judged.views);
+  if (options.no_return == JudgeOptions::NoReturn::Auto)
+    takeBackMissed(path, around, result.domain, judged.views);
   for (std::size_t i = 0; i < count; ++i) {
     weighAlternatives(alternatives, i, testimonies, confidence[i], table, surfaces, judged.views[i]);
     letGo(judged.views[i]), letGo(confidence[i]);

@@ -38,7 +38,8 @@ struct Judgement {
 struct JudgeOptions {
   NeighbourOptions neighbours;
   /// What a missing depth around an object means. Auto: free space when it fills most of most images'
-  /// borders.
+  /// borders and no other view measured anything there; a view that misses a fifth of what it might have met
+  /// is not believed at all.
   enum class NoReturn { Ignore, Free, Auto } no_return = NoReturn::Auto;
   /// The second pass, leave-one-out denial; costs about as much as the first.
   enum class Denial { Skip, Examine } denial = Denial::Examine;
