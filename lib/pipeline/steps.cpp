@@ -17,13 +17,20 @@ namespace {
 // A default voxel never makes the longest side of the domain longer than this.
 constexpr double kDefaultLongestSide = 512;
 constexpr double kLambdaPerVoxel = 0.6;
-/// ρ₀ where the noise is wider than the voxel. ρ₀/λ, the width of a fold that evidence 1 just pays for, is
-/// then ⅔ of the noise whatever the voxel.
+// ρ₀ where the noise is wider than the voxel. ρ₀/λ, the width of a fold that evidence 1 just pays for, is
+// then ⅔ of the noise whatever the voxel.
 constexpr double kLeastCostOfNoise = 0.4;
-/// Denied by all of n views, a place has the evidence −a log n: with a of its own 8 views hold thin parts as
-/// well as 72 do, and 72 do not cast shadows as solid as those of 8.
+// Denied by all of n views, a place has the evidence −a log n: with a of its own 8 views hold thin parts as
+// well as 72 do, and 72 do not cast shadows as solid as those of 8.
 constexpr double kFewViews = 8, kPriorOfFewViews = 1.0, kManyViews = 24, kPriorOfManyViews = 0.5;
 constexpr double kThicknessPerDiagonal = 0.11;
+
+double visibilityPriorOf(const JudgedViews& judged) {
+  double views = 0;  // that are not repetitions
+  for (const JudgedView& view : judged.views) views += view.weight;
+  const double share = (views - kFewViews) / (kManyViews - kFewViews);
+  return std::lerp(kPriorOfFewViews, kPriorOfManyViews, std::clamp(share, 0.0, 1.0));
+}
 
 double scaleAtExponent(const NoiseLaw& law, double typical, int exponent) {
   return law.at(typical) / std::pow(typical, exponent);
@@ -201,13 +208,6 @@ double leastWidth(const std::vector<int>& reduction, const CalibrationReport& ca
   // The spacing is that of images made smaller, the window that of the images before.
   const int factor = reduction.empty() ? 1 : *std::max_element(reduction.begin(), reduction.end());
   return std::max(calibration.noise_scale, options.window_px * calibration.point_spacing / factor);
-}
-
-double visibilityPriorOf(const JudgedViews& judged) {
-  double views = 0;  // that are not repetitions
-  for (const JudgedView& view : judged.views) views += view.weight;
-  const double share = (views - kFewViews) / (kManyViews - kFewViews);
-  return std::lerp(kPriorOfFewViews, kPriorOfManyViews, std::clamp(share, 0.0, 1.0));
 }
 
 EvidenceOptions evidenceOptions(const JudgedViews& judged, const Box& domain,

@@ -79,7 +79,8 @@ void addEnergyOptions(CLI::App& app, FuseRequest& r) {
       ->check(numberBetween(0, 1))
       ->type_name("NUMBER")
       ->option_text("0.4 x noise/max(voxel, noise); 0 unless --rule outside");
-  app.add_option("--mu", o.mu, "How fast agreement makes a surface cheap: a cost of e^(-mu x agreeing views)")
+  app.add_option("--mu", o.mu,
+                 "How fast agreement makes a surface cheap: e^(-mu x agreeing views), at least --least-cost")
       ->type_name("NUMBER")
       ->capture_default_str();
 }
