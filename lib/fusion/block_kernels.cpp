@@ -174,12 +174,19 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
   }
 }
 
-void compareDepths(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
+FloatVec varianceAt(const LookupVariance& v, FloatVec depth) {
+  const Floats df;
+  const auto set = [](float value) HWY_ATTR { return hn::Set(Floats(), value); };
+  const FloatVec d = hn::Max(depth, hn::Set(df, v.vertex));
+  const FloatVec noise = hn::MulAdd(d, hn::MulAdd(d, set(v.quadratic), set(v.linear)), set(v.constant));
+  const FloatVec slack = hn::MulAdd(depth, hn::MulAdd(depth, set(v.slack2), set(v.slack1)), set(v.slack0));
+  return hn::MulAdd(noise, noise, slack);
+}
+
+void compareDepths(const float* measurements, const LookupVariance& variance, float sigmas,
                    const float* noise, const BlockLook& look, std::size_t size, BlockComparison& comparison) {
   const Floats df;
   const Ints di;
-  const Table other_noise(measurements_noise.values(), measurements_noise.near(),
-                          measurements_noise.perStep(), NoiseTable::kSteps);
   const FloatVec zero = hn::Zero(df), sigmas_squared = hn::Set(df, sigmas * sigmas);
   const auto word = [&](Measured measured) { return hn::Set(di, static_cast<std::int32_t>(measured)); };
   for (std::size_t i = 0; i < size; i += hn::Lanes(df)) {
@@ -191,8 +198,8 @@ void compareDepths(const float* measurements, const NoiseTable& measurements_noi
     }
     const FloatVec measured = hn::GatherIndex(df, measurements, hn::Max(pixel, hn::Zero(di)));
     const FloatVec further = hn::Sub(measured, hn::Load(df, &look.depth[i]));
-    const FloatVec own = hn::LoadU(df, noise + i), other = other_noise(measured);
-    const FloatVec limit = hn::Mul(sigmas_squared, hn::MulAdd(own, own, hn::Mul(other, other)));
+    const FloatVec own = hn::LoadU(df, noise + i);
+    const FloatVec limit = hn::Mul(sigmas_squared, hn::MulAdd(own, own, varianceAt(variance, measured)));
     const auto apart = hn::RebindMask(di, hn::Gt(hn::Mul(further, further), limit));
     const IntVec side = hn::IfThenElse(hn::RebindMask(di, hn::Gt(further, zero)), word(Measured::Further),
                                        word(Measured::Nearer));
@@ -200,6 +207,83 @@ void compareDepths(const float* measurements, const NoiseTable& measurements_noi
     const auto nothing = hn::RebindMask(di, hn::Le(measured, zero));
     const IntVec answer = hn::IfThenElse(nothing, word(Measured::Nothing), found);
     hn::Store(hn::IfThenElse(seen, answer, word(Measured::Unseen)), di, &comparison.words[i]);
+  }
+}
+
+// Not of unit length.
+struct Directions {
+  FloatVec x, y, z;
+};
+
+FloatVec dot(const Directions& a, const Directions& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+// PackedNormal::direction().
+Directions unpackDirections(IntVec bits) {
+  const Floats df;
+  const FloatVec one = hn::Set(df, 1.0f), per_unit = hn::Set(df, 1 / PackedNormal::kLargest);
+  const FloatVec x = hn::Mul(hn::ConvertTo(df, hn::ShiftRight<16>(hn::ShiftLeft<16>(bits))), per_unit),
+                 y = hn::Mul(hn::ConvertTo(df, hn::ShiftRight<16>(bits)), per_unit);
+  const FloatVec rest_x = hn::Sub(one, hn::Abs(x)), rest_y = hn::Sub(one, hn::Abs(y));
+  const FloatVec z = hn::Sub(rest_x, hn::Abs(y));
+  const auto is_folded = hn::Lt(z, hn::Zero(df));
+  return {hn::IfThenElse(is_folded, hn::CopySign(rest_y, x), x),
+          hn::IfThenElse(is_folded, hn::CopySign(rest_x, y), y), z};
+}
+
+void tellNormalsApart(const BlockNormals& normals, const std::int32_t* measured, const BlockLook& look,
+                      std::size_t size, BlockComparison& comparison) {
+  constexpr float kAgreeCosine = 0.70710678f;  // 45°
+  const Floats df;
+  const Ints di;
+  const FloatVec zero = hn::Zero(df), least = hn::Set(df, kAgreeCosine * kAgreeCosine);
+  for (std::size_t i = 0; i < size; i += hn::Lanes(df)) {
+    const IntVec said = hn::Load(di, &comparison.words[i]);
+    const auto is_same = hn::Eq(said, hn::Set(di, static_cast<std::int32_t>(Measured::Same)));
+    if (hn::AllFalse(di, is_same)) continue;
+    const IntVec bits = hn::GatherIndex(di, measured, hn::Max(hn::Load(di, &look.pixel[i]), hn::Zero(di)));
+    const IntVec own_bits = hn::LoadU(di, &normals[i].bits), none = hn::Set(di, PackedNormal::kNone);
+    const Directions own = unpackDirections(own_bits), other = unpackDirections(bits);
+    const FloatVec along = dot(own, other), lengths = hn::Mul(dot(own, own), dot(other, other));
+    const auto is_turned =
+        hn::Or(hn::Lt(along, zero), hn::Lt(hn::Mul(along, along), hn::Mul(least, lengths)));
+    const auto is_known = hn::And(hn::Ne(own_bits, none), hn::Ne(bits, none));
+    const auto is_other = hn::And(hn::And(is_same, is_known), hn::RebindMask(di, is_turned));
+    const IntVec nearer = hn::Set(di, static_cast<std::int32_t>(Measured::Nearer));
+    hn::Store(hn::IfThenElse(is_other, nearer, said), di, &comparison.words[i]);
+  }
+}
+
+void countAnswers(const BlockComparison& comparison, const BlockNormals& normals, const float* sensor,
+                  const PointBlock& block, BlockAnswers& answers) {
+  constexpr float kFacingCosine = 0.26f;  // 75°
+  const Floats df;
+  const Ints di;
+  const FloatVec zero = hn::Zero(df), least = hn::Set(df, kFacingCosine * kFacingCosine);
+  for (std::size_t i = 0; i < block.size; i += hn::Lanes(df)) {
+    const IntVec said = hn::Load(di, &comparison.words[i]);
+    const auto is = [&](Measured answer)
+                        HWY_ATTR { return hn::Eq(said, hn::Set(di, static_cast<std::int32_t>(answer))); };
+    // A mask is −1 where it holds.
+    const auto add = [&](hn::Mask<Ints> mask, std::int32_t* counts) HWY_ATTR {
+      hn::Store(hn::Sub(hn::Load(di, counts), hn::VecFromMask(di, mask)), di, counts);
+    };
+    add(is(Measured::Same), &answers.agreeing[i]);
+    add(is(Measured::Further), &answers.past[i]);
+    add(is(Measured::Nothing), &answers.missed[i]);
+    const auto is_nearer = is(Measured::Nearer);
+    if (hn::AllFalse(di, is_nearer)) continue;
+    const Directions to_sensor{hn::Sub(hn::Set(df, sensor[0]), hn::Load(df, &block.x[i])),
+                               hn::Sub(hn::Set(df, sensor[1]), hn::Load(df, &block.y[i])),
+                               hn::Sub(hn::Set(df, sensor[2]), hn::Load(df, &block.z[i]))};
+    const IntVec bits = hn::LoadU(di, &normals[i].bits);
+    const Directions normal = unpackDirections(bits);
+    const FloatVec along = dot(normal, to_sensor),
+                   lengths = hn::Mul(dot(normal, normal), dot(to_sensor, to_sensor));
+    const auto faces = hn::And(hn::Gt(along, zero), hn::Gt(hn::Mul(along, along), hn::Mul(least, lengths)));
+    const auto may_face = hn::Or(hn::Eq(bits, hn::Set(di, PackedNormal::kNone)), hn::RebindMask(di, faces));
+    add(hn::And(is_nearer, may_face), &answers.hidden[i]);
   }
 }
 
@@ -284,6 +368,8 @@ HWY_EXPORT(lookPinhole);
 HWY_EXPORT(testifySingle);
 HWY_EXPORT(agreeSingle);
 HWY_EXPORT(compareDepths);
+HWY_EXPORT(tellNormalsApart);
+HWY_EXPORT(countAnswers);
 HWY_EXPORT(accumulateNodes);
 HWY_EXPORT(logMeansOfNodes);
 HWY_EXPORT(targetName);
@@ -318,17 +404,6 @@ void testifyAny(const PreparedView& prepared, const LikelihoodRatio& ratio, floa
   }
 }
 
-// compareDepths() for one point.
-Measured compareOne(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
-                    float noise, std::int32_t pixel, float depth) {
-  if (pixel < 0) return Measured::Unseen;
-  const float measured = measurements[pixel];
-  if (measured == kInvalidDepth) return Measured::Nothing;
-  const float further = measured - depth, other = measurements_noise.at(measured);
-  if (further * further <= sigmas * sigmas * (noise * noise + other * other)) return Measured::Same;
-  return further > 0 ? Measured::Further : Measured::Nearer;
-}
-
 void agreeAny(const PreparedView& prepared, float voxel, float weight, const BlockLook& look,
               std::size_t size, float* counts) {
   const JudgedView& view = *prepared.view;
@@ -359,14 +434,21 @@ BlockLook look(const Projector& projector, const PointBlock& block) {
   return result;
 }
 
-void prefetch(const float* image, const BlockLook& look, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) __builtin_prefetch(image + std::max(look.pixel[i], 0));
+void prefetch(std::initializer_list<const void*> images, const BlockLook& look, std::size_t size) {
+  constexpr std::int32_t kLine = 16;  // pixels of a line of the cache
+  std::int32_t last = -1;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::int32_t line = look.pixel[i] / kLine;
+    if (line == last || look.pixel[i] < 0) continue;
+    last = line;
+    for (const void* image : images)
+      __builtin_prefetch(static_cast<const char*>(image) + 4 * std::ptrdiff_t{look.pixel[i]});
+  }
 }
 
 BlockLook look(const PreparedView& view, const PointBlock& block) {
   const BlockLook result = look(view.projector, block);
-  prefetch(view.view->depth.data(), result, block.size);
-  prefetch(view.view->outlier.data(), result, block.size);
+  prefetch({view.view->depth.data(), view.view->outlier.data()}, result, block.size);
   return result;
 }
 
@@ -379,19 +461,22 @@ void agree(const PreparedView& view, float voxel, float weight, const BlockLook&
   }
 }
 
-BlockComparison compare(const float* measurements, const NoiseTable& measurements_noise, float sigmas,
+BlockComparison compare(const float* measurements, const LookupVariance& variance, float sigmas,
                         const float* noise, const BlockLook& look, std::size_t size) {
   BlockComparison result;
-  if (measurements_noise.isTabulated()) {
-    HWY_DYNAMIC_DISPATCH(compareDepths)(measurements, measurements_noise, sigmas, noise, look, size, result);
-    return result;
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    const Measured measured =
-        compareOne(measurements, measurements_noise, sigmas, noise[i], look.pixel[i], look.depth[i]);
-    result.words[i] = static_cast<std::int32_t>(measured);
-  }
+  HWY_DYNAMIC_DISPATCH(compareDepths)(measurements, variance, sigmas, noise, look, size, result);
   return result;
+}
+
+void tellSidesApart(const BlockNormals& normals, const PackedNormal* measured, const BlockLook& look,
+                    std::size_t size, BlockComparison& comparison) {
+  HWY_DYNAMIC_DISPATCH(tellNormalsApart)(normals, &measured->bits, look, size, comparison);
+}
+
+void count(const BlockComparison& comparison, const BlockNormals& normals, const Eigen::Vector3d& sensor,
+           const PointBlock& block, BlockAnswers& answers) {
+  const Eigen::Vector3f relative = (sensor - block.origin).cast<float>();
+  HWY_DYNAMIC_DISPATCH(countAnswers)(comparison, normals, relative.data(), block, answers);
 }
 
 BlockTestimony testify(const PreparedView& view, const LikelihoodRatio& ratio, float thickness,

@@ -5,8 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "fusion/block_kernels.h"
+#include "fusion/denial_kernels.h"
+#include "fusion/depth_tiles.h"
 #include "vdbfuse/base/parallel.h"
 
 namespace vdbfuse {
@@ -28,17 +31,84 @@ std::uint8_t denialBin(float evidence) {
                                    kBinEnds.begin());
 }
 
-// 8³ points of the grid. Views and rays that have nothing to do with them skip them whole.
-constexpr int kBrick = 8;
+// 8³ points of the grid. Views that have nothing to do with them skip them whole, rays half a side at a time.
+constexpr int kBrick = BrickedEvidence::kBrick, kHalf = BrickedEvidence::kHalf;
+constexpr std::size_t kOctants = BrickedEvidence::kOctants, kOctant = BrickedEvidence::kOctant;
 
 struct Brick {
   explicit Brick(std::vector<Eigen::Vector3d> brick_points)
-      : points(std::move(brick_points)), block(points), smallest(kNobodyDenies) {}
+      : points(std::move(brick_points)), block(points) {}
 
   std::vector<Eigen::Vector3d> points;
   PointBlock block;                                ///< of `points`
   float sure = std::numeric_limits<float>::max();  ///< no less than this of any point, by all views
-  float smallest;                                  ///< of the points, without the view left out
+};
+
+// Where a box lies in an image: pixels, and the depth of its nearest corner.
+struct BoxSight {
+  float left, top, right, bottom, nearest;
+};
+
+// Boxes as an undistorted pinhole sees them; nothing is known of other projections.
+class BoxCamera {
+ public:
+  // `origin`: what boxes are relative to.
+  BoxCamera(const Projector& projector, const Eigen::Vector3d& origin) : rows_(projector.rowsFrom(origin)) {}
+
+  // Nothing where the box reaches behind the sensor.
+  std::optional<BoxSight> operator()(const Eigen::Vector3f& low, float side) const {
+    if (!rows_) return std::nullopt;
+    constexpr float kFar = std::numeric_limits<float>::max();
+    BoxSight sight{kFar, kFar, -kFar, -kFar, kFar};
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3f place =
+          low + side * Eigen::Array3i(corner & 1, corner >> 1 & 1, corner >> 2).cast<float>().matrix();
+      const float depth = row(2, place);
+      if (!(depth > 0)) return std::nullopt;
+      const float u = row(0, place) / depth, v = row(1, place) / depth;
+      sight.left = std::min(sight.left, u), sight.right = std::max(sight.right, u);
+      sight.top = std::min(sight.top, v), sight.bottom = std::max(sight.bottom, v);
+      sight.nearest = std::min(sight.nearest, depth);
+    }
+    return sight;
+  }
+
+ private:
+  float row(std::size_t r, const Eigen::Vector3f& p) const {
+    const auto& m = rows_->rows[r];
+    return m[0] * p.x() + m[1] * p.y() + m[2] * p.z() + m[3];
+  }
+
+  std::optional<PinholeRows> rows_;
+};
+
+// The depth from which on the rays of each tile of an image may be denied.
+class DenialTiles {
+ public:
+  DenialTiles(int width, int height)
+      : first_((width + kSide - 1) / kSide, (height + kSide - 1) / kSide, std::numeric_limits<float>::max()) {
+  }
+
+  void mark(const std::optional<BoxSight>& box) {
+    constexpr float kSlack = 1;  // pixels
+    if (!box) return std::fill(first_.begin(), first_.end(), 0.0f);
+    const auto tile = [](float pixel, int count) {
+      return static_cast<int>(std::clamp(std::floor(pixel / kSide), -1.0f, static_cast<float>(count)));
+    };
+    const int left = std::max(tile(box->left - kSlack, first_.width()), 0),
+              right = std::min(tile(box->right + kSlack, first_.width()), first_.width() - 1);
+    const int top = std::max(tile(box->top - kSlack, first_.height()), 0),
+              bottom = std::min(tile(box->bottom + kSlack, first_.height()), first_.height() - 1);
+    for (int y = top; y <= bottom; ++y) {
+      for (int x = left; x <= right; ++x) first_(x, y) = std::min(first_(x, y), box->nearest);
+    }
+  }
+
+  float at(int x, int y) const { return first_(x / kSide, y / kSide); }
+
+ private:
+  static constexpr int kSide = 8;
+  Image<float> first_;
 };
 
 // Sums over all views at the points of a regular grid, from which one view's own term can be taken away.
@@ -63,6 +133,7 @@ class TestimonyGrid {
     sums_.assign(count * kNodes, 0.0f);
     reports_.assign(count, 0.0f);
     without_.assign(count, 0.0f);
+    smallest_.assign(bricks_.size() * kOctants, kNobodyDenies);
     ProgressStep progress_step(progress, "weigh views", bricks_.size() * judged_.views.size());
     forEachPrepared(judged_, [&](const std::vector<PreparedView>& views) {
       forEachBrick([&](Brick& brick, std::size_t first) {
@@ -78,14 +149,19 @@ class TestimonyGrid {
     });
   }
 
-  // From now on smallestOnRay() is about what all views but this one say, on rays of this one.
-  void leaveOut(std::size_t index) {
-    const PreparedView view(judged_.views[index], judged_.sensor);
+  // From now on smallestOnRay() is about what all views but this one say, on rays of this one. Says where it
+  // need not be asked.
+  DenialTiles leaveOut(const PreparedView& view) {
+    const BoxCamera camera(view.projector, low_);
+    const DepthTiles depths(view.view->depth);
     forEachBrick([&](Brick& brick, std::size_t first) {
-      brick.smallest = kNobodyDenies;
+      float* const smallest = &smallest_[first / kOctant];
+      std::fill_n(smallest, kOctants, kNobodyDenies);
       if (brick.sure - kMostOfOneView > kNobodyDenies) return;
       // A ray is nearest to points up to half a step outside the image.
       if (!view.projector.mightSee(brick.block.centre, brick.block.radius + step_)) return;
+      const auto sight = camera(lowCorner(first), static_cast<float>(kBrick * step_));
+      if (sight && sight->nearest > furthestIn(depths, *sight)) return;
       std::array<float, PointBlock::kCapacity * kNodes> sums;
       std::array<float, PointBlock::kCapacity> reports;
       std::copy_n(&sums_[first * kNodes], sums.size(), sums.begin());
@@ -96,32 +172,33 @@ class TestimonyGrid {
       for (std::size_t i = 0; i < reports.size(); ++i)
         evidence[i] +=
             static_cast<float>(std::min(kPriorOfOutside, integral_.halfDenial(std::max(reports[i], 0.0f))));
-      brick.smallest = smallestOf(first);
+      smallestOfOctants(evidence, smallest);
     });
+    DenialTiles tiles(view.view->depth.width(), view.view->depth.height());
+    for (std::size_t i = 0; i < smallest_.size(); ++i) {
+      if (smallest_[i] < kNobodyDenies)
+        tiles.mark(camera(lowCorner(i * kOctant), static_cast<float>(kHalf * step_)));
+    }
+    return tiles;
   }
 
-  // Smallest evidence along the ray of a pixel, from the sensor to `end` (world), no larger than
-  // kNobodyDenies.
-  float smallestOnRay(const Eigen::Vector3d& start, const Eigen::Vector3d& end) const {
-    const Eigen::Vector3d way = end - start;
-    const double length = way.norm();
-    const auto [first, last] = insideDomain(start, way);
-    const Eigen::Vector3d low = (start - low_) / step_, pace = way / length;
-    float smallest = kNobodyDenies;
-    double s = first * length / step_;
-    while (s <= last * length / step_) {
-      const Eigen::Vector3d p = low + pace * s;
-      const Eigen::Array3i cell = p.array().cast<int>().max(0).min(kBrick * bricks_a_side_ - 1);
-      const Eigen::Array3i brick = cell / kBrick;
-      const std::size_t index = brickIndex(brick);
-      if (bricks_[index].smallest >= smallest) {
-        s += std::max(1.0, std::ceil(stepsToLeave(brick, p, pace)));
-        continue;
-      }
-      smallest = std::min(smallest, without_[index * PointBlock::kCapacity + placeInBrick(cell)]);
-      s += 1;
+  // Adds the ray of a pixel of the view left out, from `start` to `end` (world). `safe`: share of it that
+  // nobody denies.
+  void addRay(const Eigen::Vector3d& start, const Eigen::Vector3d& end, double safe, RayBatch& rays) const {
+    const Eigen::Vector3f from = ((start - low_) / step_).cast<float>(),
+                          way = ((end - start) / step_).cast<float>();
+    for (std::size_t a = 0; a < 3; ++a) {
+      rays.start[a][rays.size] = from[static_cast<Eigen::Index>(a)];
+      rays.way[a][rays.size] = way[static_cast<Eigen::Index>(a)];
     }
-    return smallest;
+    rays.safe[rays.size++] = static_cast<float>(safe);
+  }
+
+  // Smallest evidence along rays, no larger than kNobodyDenies.
+  void findSmallest(RayBatch& rays) const {
+    const Eigen::Array3i points = kBrick * bricks_a_side_;
+    vdbfuse::findSmallest({without_.data(), smallest_.data(), {points.x(), points.y(), points.z()}},
+                          kNobodyDenies, rays);
   }
 
  private:
@@ -129,14 +206,36 @@ class TestimonyGrid {
   // of the range than LikelihoodRatio::kEnd.
   static constexpr float kMostOfOneView = 12.8f;
 
-  static std::size_t placeInBrick(const Eigen::Array3i& cell) {
-    const Eigen::Array3i p = cell - cell / kBrick * kBrick;
-    return static_cast<std::size_t>((p.z() * kBrick + p.y()) * kBrick + p.x());
+  static std::size_t octant(int x, int y, int z) {
+    return static_cast<std::size_t>(z / kHalf * 4 + y / kHalf * 2 + x / kHalf);
   }
 
-  std::size_t brickIndex(const Eigen::Array3i& brick) const {
-    return static_cast<std::size_t>((brick.z() * bricks_a_side_.y() + brick.y()) * bricks_a_side_.x() +
-                                    brick.x());
+  // Of a brick or an octant, by its first point; relative to the grid's.
+  Eigen::Vector3f lowCorner(std::size_t first) const {
+    const auto brick = static_cast<int>(first / PointBlock::kCapacity),
+               octant = static_cast<int>(first % PointBlock::kCapacity / kOctant);
+    const int nx = bricks_a_side_.x(), ny = bricks_a_side_.y();
+    const Eigen::Array3i corner = kBrick * Eigen::Array3i(brick % nx, brick / nx % ny, brick / nx / ny) +
+                                  kHalf * Eigen::Array3i(octant & 1, octant >> 1 & 1, octant >> 2);
+    return (corner.cast<double>() * step_).cast<float>().matrix();
+  }
+
+  // Of the measurements whose rays might meet a box.
+  static float furthestIn(const DepthTiles& depths, const BoxSight& box) {
+    constexpr float kSlack = 1;  // pixels
+    return depths.over(box.left - kSlack, box.top - kSlack, box.right + kSlack, box.bottom + kSlack).most;
+  }
+
+  // Of the octants of a brick.
+  static void smallestOfOctants(const float* evidence, float* smallest) {
+    for (int z = 0; z < kBrick; ++z) {
+      for (int y = 0; y < kBrick; ++y) {
+        for (int x = 0; x < kBrick; ++x, ++evidence) {
+          float& least = smallest[octant(x, y, z)];
+          least = std::min(least, *evidence);
+        }
+      }
+    }
   }
 
   std::vector<Eigen::Vector3d> pointsOf(int brick) const {
@@ -150,18 +249,6 @@ class TestimonyGrid {
       }
     }
     return points;
-  }
-
-  // In grid steps along the ray.
-  static double stepsToLeave(const Eigen::Array3i& brick, const Eigen::Vector3d& p,
-                             const Eigen::Vector3d& pace) {
-    double steps = kBrick * 2;
-    for (int a = 0; a < 3; ++a) {
-      if (std::abs(pace[a]) < 1e-12) continue;
-      const double wall = kBrick * (brick[a] + (pace[a] > 0 ? 1 : 0));
-      steps = std::min(steps, (wall - p[a]) / pace[a]);
-    }
-    return steps;
   }
 
   float smallestOf(std::size_t first) const {
@@ -186,21 +273,6 @@ class TestimonyGrid {
     for (std::size_t i = 0; i < block.size; ++i) reports[i] += weight * said.share[i];
   }
 
-  // Shares of the way at which it enters and leaves the grid, within [0, 1]; first > last when it misses it.
-  std::pair<double, double> insideDomain(const Eigen::Vector3d& start, const Eigen::Vector3d& way) const {
-    double first = 0, last = 1;
-    for (int a = 0; a < 3; ++a) {
-      const double low = low_[a] - start[a], high = low + step_ * kBrick * bricks_a_side_[a];
-      if (std::abs(way[a]) < 1e-12) {
-        if (low > 0 || high < 0) return {1, 0};
-        continue;
-      }
-      first = std::max(first, std::min(low / way[a], high / way[a]));
-      last = std::min(last, std::max(low / way[a], high / way[a]));
-    }
-    return {first, last};
-  }
-
   Eigen::Vector3d low_;
   double step_;
   Eigen::Array3i bricks_a_side_;
@@ -209,6 +281,7 @@ class TestimonyGrid {
   VisibilityIntegral integral_;
   std::vector<Brick> bricks_;
   std::vector<float> sums_, reports_, without_;  ///< brick by brick
+  std::vector<float> smallest_;                  ///< of `without_` in each octant of each brick
 };
 
 // A ray that comes in flat is near to the surface, and to grid points behind it, for longer.
@@ -217,21 +290,51 @@ double slant(float incidence) {
   return incidence > 0 ? std::max<double>(incidence, kFlattest) : 1.0;
 }
 
-void examineRow(const TestimonyGrid& grid, const JudgedViews& judged, std::size_t index, int y,
-                Image<PixelTestimony>& testimony) {
-  const JudgedView& view = judged.views[index];
-  for (int x = 0; x < view.depth.width(); ++x) {
-    const float depth = view.depth(x, y);
-    if (depth == kInvalidDepth) continue;
-    const double claimed = depth - std::max(3 * lookupNoise(judged.sensor, view.projection, depth),
-                                            kClearance * grid.step() / slant(view.incidence(x, y)));
-    if (claimed <= judged.sensor.near) continue;
-    const Eigen::Vector3d start =
-        view.world_from_camera * unproject(view.projection, x, y, judged.sensor.near);
-    const Eigen::Vector3d end = view.world_from_camera * unproject(view.projection, x, y, claimed);
-    testimony(x, y).denial = denialBin(grid.smallestOnRay(start, end)) & 7u;
+// Looks at the rays of one view.
+class RayExaminer {
+ public:
+  RayExaminer(const TestimonyGrid& grid, const DenialTiles& tiles, const PreparedView& view, double near)
+      : grid_(grid),
+        tiles_(tiles),
+        view_(view),
+        unprojector_(view.view->projection, view.view->world_from_camera),
+        near_(near) {}
+
+  void examineRow(int y, PixelTestimony* testimony) const {
+    RayBatch rays;
+    std::array<int, RayBatch::kCapacity> pixels;
+    const auto look = [&] {
+      grid_.findSmallest(rays);
+      for (std::size_t i = 0; i < rays.size; ++i)
+        testimony[pixels[i]].denial = denialBin(rays.smallest[i]) & 7u;
+      rays.size = 0;
+    };
+    for (int x = 0; x < view_.view->depth.width(); ++x) {
+      if (view_.view->depth(x, y) == kInvalidDepth) continue;
+      const double claimed = claimedDepth(x, y), denied_from = tiles_.at(x, y);
+      if (claimed <= std::max(near_, denied_from)) continue;
+      pixels[rays.size] = x;
+      grid_.addRay(unprojector_(x, y, near_), unprojector_(x, y, claimed),
+                   std::max(denied_from - near_, 0.0) / (claimed - near_), rays);
+      if (rays.size == RayBatch::kCapacity) look();
+    }
+    if (rays.size > 0) look();
   }
-}
+
+ private:
+  // Up to there a pixel says that space is free.
+  double claimedDepth(int x, int y) const {
+    const float depth = view_.view->depth(x, y);
+    return depth - std::max<double>(3 * view_.noise.at(depth),
+                                    kClearance * grid_.step() / slant(view_.view->incidence(x, y)));
+  }
+
+  const TestimonyGrid& grid_;
+  const DenialTiles& tiles_;
+  const PreparedView& view_;
+  Unprojector unprojector_;
+  double near_;
+};
 
 }  // namespace
 
@@ -241,11 +344,13 @@ void examineDenial(const JudgedViews& judged, const Box& domain, Testimonies& te
   grid.fill(progress);
   ProgressStep step(progress, "look for denial", judged.views.size());
   for (std::size_t i = 0; i < judged.views.size(); ++i) {
-    grid.leaveOut(i);
+    const PreparedView view(judged.views[i], judged.sensor);
+    const DenialTiles tiles = grid.leaveOut(view);
+    const RayExaminer examiner(grid, tiles, view, judged.sensor.near);
     parallelFor(static_cast<std::size_t>(judged.views[i].depth.height()), 16,
                 [&](std::size_t begin, std::size_t end) {
-                  for (std::size_t y = begin; y < end; ++y)
-                    examineRow(grid, judged, i, static_cast<int>(y), testimonies.views[i]);
+                  for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+                    examiner.examineRow(y, testimonies.views[i].row(y));
                 });
     letGo(judged.views[i]), letGo(testimonies.views[i]);
     step.advance();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "fusion/outlier_em.h"
@@ -14,16 +15,11 @@ namespace {
 
 using T = PixelTestimony;
 constexpr std::size_t kConfidences = ReliabilityModel::kConfidences;
-// Everything observed of a pixel: confidence, answers of the neighbours, continuity, denial.
 constexpr std::size_t kOutcomes = kConfidences * T::kAnswers * T::kContinuities * T::kDenials;
 
 struct Outcome {
   std::size_t confidence, answer, continuity, denial;
 };
-
-std::size_t outcome(std::size_t confidence, const T& t) {
-  return ((confidence * T::kAnswers + t.answer()) * T::kContinuities + t.continuity) * T::kDenials + t.denial;
-}
 
 Outcome outcomeAt(std::size_t index) {
   const auto take = [&index](std::size_t size) {
@@ -99,7 +95,7 @@ std::vector<double> countOutcomes(const Testimonies& testimonies,
 // well would let the classes drift: where most outliers are isolated or denied, wrong patches in front of the
 // surface, which nobody denies, would end up among the inliers. Both histograms lean on that of all pixels:
 // the few wrong pixels of a clean scan, which lie in its hollows, teach nothing of denial.
-void hearDenial(const std::vector<double>& counts, std::vector<double>& table) {
+void hearDenial(const std::vector<double>& counts, std::vector<float>& table) {
   constexpr double kLeaning = 0.02;  // in shares of all pixels
   std::array<double, T::kDenials> all{}, bad{};
   for (std::size_t k = 0; k < kOutcomes; ++k) {
@@ -115,13 +111,14 @@ void hearDenial(const std::vector<double>& counts, std::vector<double>& table) {
   };
   for (std::size_t k = 0; k < kOutcomes; ++k) {
     const double against = table[k] * ratioOf(outcomeAt(k).denial);
-    table[k] = against / (against + 1 - table[k]);
+    table[k] = static_cast<float>(against / (against + 1 - table[k]));
   }
 }
 
 }  // namespace
 
 ConfidenceBins::ConfidenceBins(const std::vector<View>& views) {
+  search_.fill(std::numeric_limits<float>::infinity());
   // A sample is enough for twenty quantiles.
   constexpr std::size_t kSmallestStride = 7, kMostSamples = 8'000'000;
   std::size_t pixels = 0;
@@ -140,11 +137,16 @@ ConfidenceBins::ConfidenceBins(const std::vector<View>& views) {
   std::sort(sample.begin(), sample.end());
   if (sample.front() == sample.back()) return;
   for (std::size_t k = 1; k < kConfidences; ++k) ends_.push_back(sample[sample.size() * k / kConfidences]);
+  std::copy(ends_.begin(), ends_.end(), search_.begin());
 }
 
 std::uint8_t ConfidenceBins::binOf(float confidence) const {
+  static_assert(kConfidences <= 32);
   if (!std::isfinite(confidence)) return 0;
-  return static_cast<std::uint8_t>(std::upper_bound(ends_.begin(), ends_.end(), confidence) - ends_.begin());
+  // Bisection without branches: they cannot be foreseen.
+  unsigned bin = 0;
+  for (const unsigned half : {16u, 8u, 4u, 2u, 1u}) bin += search_[bin + half - 1] <= confidence ? half : 0;
+  return static_cast<std::uint8_t>(bin);
 }
 
 std::vector<Image<std::uint8_t>> ConfidenceBins::replace(std::vector<View>& views) const {
@@ -161,10 +163,6 @@ std::vector<Image<std::uint8_t>> ConfidenceBins::replace(std::vector<View>& view
     confidence = {};
   });
   return bins;
-}
-
-double ReliabilityTable::outlier(std::size_t confidence, const PixelTestimony& testimony) const {
-  return table_[outcome(confidence, testimony)];
 }
 
 void ReliabilityTable::describe(const std::vector<double>& counts) {
@@ -194,7 +192,8 @@ ReliabilityTable learnReliability(const Testimonies& testimonies,
   ReliabilityTable result;
   for (std::size_t k = 0; k < kOutcomes; ++k) {
     const Outcome o = outcomeAt(k);
-    result.table_.push_back(model.outlierGiven(ratios.of(o.answer), o.continuity, o.confidence));
+    result.table_.push_back(
+        static_cast<float>(model.outlierGiven(ratios.of(o.answer), o.continuity, o.confidence)));
   }
   hearDenial(counts, result.table_);
   result.describe(counts);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "fusion/pixel_testimony.h"
@@ -20,12 +21,21 @@ class ConfidenceBins {
 
  private:
   std::vector<float> ends_;
+  std::array<float, 32> search_;  ///< ends_, and infinity
 };
+
+/// Number of everything observed of a pixel: confidence, answers of the neighbours, continuity, denial.
+inline std::size_t outcome(std::size_t confidence, const PixelTestimony& t) {
+  using T = PixelTestimony;
+  return ((confidence * T::kAnswers + t.answer()) * T::kContinuities + t.continuity) * T::kDenials + t.denial;
+}
 
 /// The learned table: outlier probability of everything that can be observed of a pixel.
 class ReliabilityTable {
  public:
-  double outlier(std::size_t confidence, const PixelTestimony& testimony) const;
+  float outlier(std::size_t confidence, const PixelTestimony& testimony) const {
+    return table_[outcome(confidence, testimony)];
+  }
   double outlierShare() const { return outlier_share_; }
   const std::array<double, ReliabilityModel::kConfidences>& byConfidence() const { return by_confidence_; }
 
@@ -34,7 +44,7 @@ class ReliabilityTable {
   friend ReliabilityTable learnReliability(const Testimonies&, const std::vector<Image<std::uint8_t>>&);
   double outlier_share_ = 0;
   std::array<double, ReliabilityModel::kConfidences> by_confidence_{};
-  std::vector<double> table_;
+  std::vector<float> table_;  ///< by outcome()
 };
 
 /// EM over all measured pixels. `confidence`: bins, empty images without one. A confidence that says nothing

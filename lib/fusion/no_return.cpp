@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -12,46 +13,57 @@
 namespace vdbfuse {
 namespace {
 
-constexpr int kRadius = 4;
+constexpr int kRadius = 4, kSide = 2 * kRadius + 1;
 
-// Number of ones in a centred window; what lies outside the image does not count.
-using Counts = std::vector<std::uint8_t>;
+using Bytes = std::vector<std::uint8_t>;
 
-void countAlongRow(const std::uint8_t* row, int width, Counts& counts) {
-  int count = 0;
-  for (int x = 0; x < std::min(kRadius, width); ++x) count += row[x];
-  for (int x = 0; x < width; ++x) {
-    if (x + kRadius < width) count += row[x + kRadius];
-    counts[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(count);
-    if (x >= kRadius) count -= row[x - kRadius];
-  }
+// out[x] = padded[x] + … + padded[x + 8] in four sums of whole rows, sixteen and more pixels an instruction.
+void addNine(const std::uint8_t* padded, std::size_t width, Bytes& pairs, Bytes& fours, std::uint8_t* out) {
+  static_assert(kSide == 9);
+  for (std::size_t x = 0; x < width + 6; ++x) pairs[x] = static_cast<std::uint8_t>(padded[x] + padded[x + 1]);
+  for (std::size_t x = 0; x < width + 4; ++x) fours[x] = static_cast<std::uint8_t>(pairs[x] + pairs[x + 2]);
+  for (std::size_t x = 0; x < width; ++x)
+    out[x] = static_cast<std::uint8_t>(fours[x] + fours[x + 4] + padded[x + 8]);
 }
 
-// 1 where ones(x, y), the number of ones in the square window, satisfies keep(ones, pixels of the window).
-template <class Keep>
-Image<std::uint8_t> filterSquare(const Image<std::uint8_t>& mask, Keep keep) {
+// Ones of each pixel's row within kRadius of it.
+Image<std::uint8_t> countAlongRows(const Image<std::uint8_t>& mask) {
+  const auto width = static_cast<std::size_t>(mask.width());
+  Bytes padded(width + 2 * kRadius), pairs(padded.size()), fours(padded.size());
+  Image<std::uint8_t> counts(mask.width(), mask.height());
+  for (int y = 0; y < mask.height(); ++y) {
+    std::copy_n(mask.row(y), width, padded.begin() + kRadius);
+    addNine(padded.data(), width, pairs, fours, counts.row(y));
+  }
+  return counts;
+}
+
+// 1 where the centred 9×9 window holds more than limit(its pixels inside the image) ones.
+template <class Limit>
+Image<std::uint8_t> moreThan(const Image<std::uint8_t>& mask, Limit limit) {
   const int width = mask.width(), height = mask.height();
-  const std::size_t columns = static_cast<std::size_t>(width);
   const auto extent = [](int i, int count) {
     return std::min(i + kRadius, count - 1) - std::max(i - kRadius, 0) + 1;
   };
-  std::vector<int> extents(columns);
-  for (int x = 0; x < width; ++x) extents[static_cast<std::size_t>(x)] = extent(x, width);
-  std::vector<Counts> rows(static_cast<std::size_t>(height), Counts(columns));
-  std::vector<int> ones(columns, 0);
-  for (int y = 0; y < height; ++y) countAlongRow(mask.row(y), width, rows[static_cast<std::size_t>(y)]);
+  const Image<std::uint8_t> rows = countAlongRows(mask);
+  Bytes ones(static_cast<std::size_t>(width)), limits(ones);
   const auto accumulate = [&](int y, int sign) {
     if (y < 0 || y >= height) return;
-    const Counts& row = rows[static_cast<std::size_t>(y)];
-    for (std::size_t x = 0; x < columns; ++x) ones[x] += sign * row[x];
+    const std::uint8_t* row = rows.row(y);
+    std::transform(ones.begin(), ones.end(), row, ones.begin(), [sign](std::uint8_t sum, std::uint8_t count) {
+      return static_cast<std::uint8_t>(sum + sign * count);
+    });
   };
   Image<std::uint8_t> result(width, height);
   for (int y = 0; y < kRadius; ++y) accumulate(y, 1);
-  for (int y = 0; y < height; ++y) {
+  for (int y = 0, lines = 0; y < height; ++y) {
     accumulate(y + kRadius, 1);
-    const int lines = extent(y, height);
-    std::uint8_t* row = result.row(y);
-    for (std::size_t x = 0; x < columns; ++x) row[x] = keep(ones[x], extents[x] * lines);
+    if (extent(y, height) != lines) {
+      lines = extent(y, height);
+      for (int x = 0; x < width; ++x)
+        limits[static_cast<std::size_t>(x)] = static_cast<std::uint8_t>(limit(extent(x, width) * lines));
+    }
+    std::transform(ones.begin(), ones.end(), limits.begin(), result.row(y), std::greater<>());
     accumulate(y - kRadius, -1);
   }
   return result;
@@ -81,9 +93,10 @@ class BorderFill {
   }
 
   void fillRun(int x, int y) {
-    int begin = x, end = x + 1;
-    while (begin > 0 && mask_(begin - 1, y)) --begin;
-    while (end < mask_.width() && mask_(end, y)) ++end;
+    const std::uint8_t* row = mask_.row(y);
+    int begin = x;
+    while (begin > 0 && row[begin - 1]) --begin;
+    const int end = endOfRun(row, x, mask_.width());
     std::fill(result_.row(y) + begin, result_.row(y) + end, std::uint8_t{1});
     if (y > 0) visitRuns(begin, end, y - 1);
     if (y + 1 < mask_.height()) visitRuns(begin, end, y + 1);
@@ -91,9 +104,19 @@ class BorderFill {
 
   // The first pixel of each run of new ones within [begin, end).
   void visitRuns(int begin, int end, int y) {
-    for (int x = begin; x < end; ++x) {
-      if (x == begin || !mask_(x - 1, y)) visit(x, y);
+    const std::uint8_t* row = mask_.row(y);
+    for (int x = begin; x < end; x = endOfRun(row, x, end)) {
+      x = find(row, x, end, 1);
+      if (x < end) visit(x, y);
     }
+  }
+
+  static int endOfRun(const std::uint8_t* row, int x, int end) { return find(row, x, end, 0); }
+
+  // The first pixel from x on with a value; `end` when there is none.
+  static int find(const std::uint8_t* row, int x, int end, int value) {
+    const void* found = std::memchr(row + x, value, static_cast<std::size_t>(end - x));
+    return found == nullptr ? end : static_cast<int>(static_cast<const std::uint8_t*>(found) - row);
   }
 
   const Image<std::uint8_t>& mask_;
@@ -106,23 +129,26 @@ class BorderFill {
 Image<std::uint8_t> emptyRegions(const Image<float>& depth, const Image<float>& outlier,
                                  const Image<std::uint8_t>& missed) {
   constexpr float kProbablyWrong = 0.75f;
-  Image<std::uint8_t> missing(depth.width(), depth.height()), passable(depth.width(), depth.height());
-  for (std::size_t p = 0; p < depth.size(); ++p) {
-    missing.data()[p] = depth.data()[p] == kInvalidDepth;
-    passable.data()[p] = missing.data()[p] || (!outlier.empty() && outlier.data()[p] > kProbablyWrong);
+  Image<std::uint8_t> missing(depth.width(), depth.height());
+  std::transform(depth.begin(), depth.end(), missing.begin(), [](float d) { return d == kInvalidDepth; });
+  Image<std::uint8_t> passable = missing;
+  if (!outlier.empty()) {
+    std::transform(
+        passable.begin(), passable.end(), outlier.begin(), passable.begin(),
+        [](std::uint8_t pass, float e) { return static_cast<std::uint8_t>(pass | (e > kProbablyWrong)); });
   }
-  const auto all = [](int ones, int pixels) { return static_cast<std::uint8_t>(ones == pixels); };
-  const auto most = [](int ones, int pixels) { return static_cast<std::uint8_t>(2 * ones > pixels); };
-  const auto any = [](int ones, int) { return static_cast<std::uint8_t>(ones > 0); };
-  Image<std::uint8_t> squares = filterSquare(passable, all);
-  const Image<std::uint8_t> mostly_missing = filterSquare(missing, most);
+  const auto all = [](int pixels) { return pixels - 1; };
+  const auto most = [](int pixels) { return pixels / 2; };
+  const auto few = [](int pixels) { return pixels / 16; };
+  const auto none = [](int) { return 0; };
+  Image<std::uint8_t> squares = moreThan(passable, all);
+  const Image<std::uint8_t> mostly_missing = moreThan(missing, most);
   std::transform(squares.begin(), squares.end(), mostly_missing.begin(), squares.begin(), std::bit_and<>());
   if (!missed.empty()) {
-    const auto few = [](int ones, int pixels) { return static_cast<std::uint8_t>(16 * ones <= pixels); };
-    const Image<std::uint8_t> unseen = filterSquare(missed, few);
-    std::transform(squares.begin(), squares.end(), unseen.begin(), squares.begin(), std::bit_and<>());
+    const Image<std::uint8_t> holes = moreThan(missed, few);
+    std::transform(squares.begin(), squares.end(), holes.begin(), squares.begin(), std::greater<>());
   }
-  return BorderFill(filterSquare(squares, any)).fill();
+  return BorderFill(moreThan(squares, none)).fill();
 }
 
 double borderShare(const Image<std::uint8_t>& mask) {

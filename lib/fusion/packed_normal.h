@@ -9,8 +9,10 @@
 namespace vdbfuse {
 
 /// A unit vector in four bytes, by its place on an octahedron: to 1e-4 radians. Or none.
-class PackedNormal {
- public:
+struct PackedNormal {
+  static constexpr float kLargest = 32767;
+  static constexpr std::int32_t kNone = -32768;
+
   PackedNormal() = default;
   /// Of a unit vector; of zero: none.
   explicit PackedNormal(const Eigen::Vector3f& normal) {
@@ -18,34 +20,33 @@ class PackedNormal {
     if (!(sum > 0)) return;
     Eigen::Vector2f place = normal.head<2>() / sum;
     if (normal.z() < 0) place = folded(place);
-    x_ = stored(place.x()), y_ = stored(place.y());
+    bits = stored(place.y()) << 16 | (stored(place.x()) & 0xFFFF);
   }
 
-  bool isNone() const { return x_ == kNone; }
+  bool isNone() const { return bits == kNone; }
   /// Zero when there is none.
   Eigen::Vector3f unpack() const { return isNone() ? Eigen::Vector3f::Zero() : direction().normalized(); }
   /// Along the normal, not of unit length. REQUIRES: there is one.
   Eigen::Vector3f direction() const {
-    Eigen::Vector2f place(static_cast<float>(x_) / kLargest, static_cast<float>(y_) / kLargest);
+    const auto x = static_cast<std::int16_t>(bits & 0xFFFF);
+    Eigen::Vector2f place(static_cast<float>(x) / kLargest, static_cast<float>(bits >> 16) / kLargest);
     const float z = 1 - place.cwiseAbs().sum();
     if (z < 0) place = folded(place);
     return {place.x(), place.y(), z};
   }
 
- private:
-  static constexpr float kLargest = 32767;
-  static constexpr std::int16_t kNone = -32768;
+  /// x in the lower and y in the upper half, times kLargest.
+  std::int32_t bits = kNone;
 
-  static std::int16_t stored(float value) {
-    return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * kLargest));
+ private:
+  static std::int32_t stored(float value) {
+    return static_cast<std::int32_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * kLargest));
   }
   // The lower half of the octahedron covers the corners of the square.
   static Eigen::Vector2f folded(const Eigen::Vector2f& place) {
     return {std::copysign(1 - std::abs(place.y()), place.x()),
             std::copysign(1 - std::abs(place.x()), place.y())};
   }
-
-  std::int16_t x_ = kNone, y_ = kNone;
 };
 
 }  // namespace vdbfuse

@@ -4,17 +4,21 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
+#include <variant>
 
+#include "fusion/surface_rows.h"
 #include "vdbfuse/base/parallel.h"
+#include "vdbfuse/geometry/distortion.h"
 
 namespace vdbfuse {
 namespace {
 
-constexpr int kRadius = 2;
-constexpr int kMinNeighbours = 6;
-constexpr double kSteepestSlope = 2.75;  // tan 70°
+constexpr int kRadius = PaddedDepth::kRadius;
+constexpr double kSteepestSlope = 2.75;                // tan 70°
+constexpr double kSigmas = 3.0 * std::numbers::sqrt2;  // between two measurements
 
 // Sums of the least-squares plane w = a + b·dx + c·dy in inverse depth.
 struct PlaneSums {
@@ -47,9 +51,8 @@ struct LocalSurface {
 
 class SurfaceAnalysis {
  public:
-  // `inverse`: 1/d of all pixels, or empty where only a few are asked for.
-  SurfaceAnalysis(const View& view, const NoiseLaw& noise, const Image<float>& inverse)
-      : view_(view), noise_(noise), depth_(view.map.depth), inverse_(inverse) {}
+  SurfaceAnalysis(const View& view, const NoiseLaw& noise)
+      : view_(view), noise_(noise), depth_(view.map.depth) {}
 
   LocalSurface analyse(int x, int y) const {
     LocalSurface result;
@@ -60,8 +63,8 @@ class SurfaceAnalysis {
     gather(x, y, sums);
     const int neighbours = sums.count - 1;
     result.continuity =
-        static_cast<float>(neighbours) / static_cast<float>(std::max(sums.valid, kMinNeighbours));
-    if (neighbours < kMinNeighbours) return result;
+        static_cast<float>(neighbours) / static_cast<float>(std::max(sums.valid, kLeastSurfaceNeighbours));
+    if (neighbours < kLeastSurfaceNeighbours) return result;
     const auto plane = sums.solve();
     if (!plane) return result;
     if (const auto normal = cameraNormal(x, y, *plane)) setNormal(x, y, *normal, result);
@@ -69,11 +72,11 @@ class SurfaceAnalysis {
   }
 
  private:
-  float inverse(int x, int y) const { return inverse_.empty() ? 1.0f / depth_(x, y) : inverse_(x, y); }
+  double inverse(int x, int y) const { return 1.0 / depth_(x, y); }
 
   void gather(int x, int y, PlaneSums& sums) const {
     const float d = depth_(x, y);
-    const float noise = static_cast<float>(3.0 * std::numbers::sqrt2 * noise_.at(d));
+    const float noise = static_cast<float>(kSigmas * noise_.at(d));
     const float slope = static_cast<float>(kSteepestSlope * footprint(view_.projection, d));
     const int left = std::max(0, x - kRadius), right = std::min(depth_.width() - 1, x + kRadius);
     const int top = std::max(0, y - kRadius), bottom = std::min(depth_.height() - 1, y + kRadius);
@@ -111,34 +114,83 @@ class SurfaceAnalysis {
   const View& view_;
   const NoiseLaw& noise_;
   const Image<float>& depth_;
-  const Image<float>& inverse_;
 };
 
+// Any projection, a pixel at a time.
+void analyseRow(const SurfaceAnalysis& analysis, int y, SurfaceRow& row) {
+  for (int x = 0; x < row.width; ++x) {
+    const LocalSurface local = analysis.analyse(x, y);
+    const auto i = static_cast<std::size_t>(x);
+    row.x[i] = local.normal.x(), row.y[i] = local.normal.y(), row.z[i] = local.normal.z();
+    row.incidence[i] = local.incidence, row.continuity[i] = local.continuity;
+  }
+}
+
+PinholeSurface prepare(const Pinhole& camera, const View& view, const NoiseLaw& noise) {
+  const auto in_single = [](double value) { return static_cast<float>(value); };
+  const NoiseLaw reach = noise * kSigmas;
+  PinholeSurface surface{
+      in_single(camera.fx),
+      in_single(camera.fy),
+      in_single(camera.cx),
+      in_single(camera.cy),
+      in_single(reach.constant),
+      in_single(reach.linear),
+      in_single(reach.quadratic),
+      // Depths are not negative.
+      reach.quadratic > 0 && reach.linear < 0 ? in_single(-0.5 * reach.linear / reach.quadratic) : 0.0f,
+      in_single(kSteepestSlope * footprint(camera, 1.0)),
+      {}};
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c)
+      surface.world_from_camera[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] =
+          in_single(view.world_from_camera.linear()(r, c));
+  }
+  return surface;
+}
+
+using RowAnalysis = std::function<void(int y, SurfaceRow& row)>;
+
+RowAnalysis rowAnalysis(const View& view, const NoiseLaw& noise) {
+  const Pinhole* camera = std::get_if<Pinhole>(&view.projection);
+  if (camera == nullptr || isDistorted(*camera))
+    return
+        [analysis = SurfaceAnalysis(view, noise)](int y, SurfaceRow& row) { analyseRow(analysis, y, row); };
+  return [surface = prepare(*camera, view, noise), depth = PaddedDepth(view.map.depth)](
+             int y, SurfaceRow& row) { analyseRow(surface, depth, y, row); };
+}
+
 }  // namespace
+
+void forEachSurfaceRow(const View& view, const NoiseLaw& noise,
+                       const std::function<void(int y, const SurfaceRow& row)>& visit) {
+  const RowAnalysis analyse = rowAnalysis(view, noise);
+  parallelFor(static_cast<std::size_t>(view.map.depth.height()), 16, [&](std::size_t begin, std::size_t end) {
+    SurfaceRow row(view.map.depth.width());
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      analyse(y, row);
+      visit(y, row);
+    }
+  });
+}
 
 PixelSurface analyseSurface(const View& view, const NoiseLaw& noise) {
   const int width = view.map.depth.width(), height = view.map.depth.height();
   PixelSurface result{Image<Eigen::Vector3f>(width, height, Eigen::Vector3f::Zero()),
                       Image<float>(width, height), Image<float>(width, height)};
-  Image<float> inverse(width, height);
-  std::transform(view.map.depth.begin(), view.map.depth.end(), inverse.begin(),
-                 [](float d) { return d > 0 ? 1.0f / d : 0.0f; });
-  const SurfaceAnalysis analysis(view, noise, inverse);
-  parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t begin, std::size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < width; ++x) {
-        const LocalSurface local = analysis.analyse(x, y);
-        result.normal(x, y) = local.normal;
-        result.incidence(x, y) = local.incidence;
-        result.continuity(x, y) = local.continuity;
-      }
+  forEachSurfaceRow(view, noise, [&](int y, const SurfaceRow& row) {
+    for (int x = 0; x < width; ++x) {
+      const auto i = static_cast<std::size_t>(x);
+      result.normal(x, y) = {row.x[i], row.y[i], row.z[i]};
     }
+    std::copy_n(row.incidence.begin(), width, result.incidence.row(y));
+    std::copy_n(row.continuity.begin(), width, result.continuity.row(y));
   });
   return result;
 }
 
 Eigen::Vector3f surfaceNormal(const View& view, const NoiseLaw& noise, int x, int y) {
-  return SurfaceAnalysis(view, noise, {}).analyse(x, y).normal;
+  return SurfaceAnalysis(view, noise).analyse(x, y).normal;
 }
 
 }  // namespace vdbfuse

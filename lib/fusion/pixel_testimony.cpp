@@ -3,21 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "fusion/block_kernels.h"
+#include "fusion/surface_rows.h"
 #include "vdbfuse/sensor/view_windows.h"
 
 namespace vdbfuse {
 namespace {
 
 constexpr float kAgreeSigmas = 3.0f;
-constexpr float kAgreeCosine = 0.70710678f;  // 45°
-constexpr int kConfirmed = 3;                // this many agreeing neighbours prove a point to be there
+constexpr int kConfirmed = 3;  // this many agreeing neighbours prove a point to be there
 
-std::uint8_t continuityBin(float share) { return share < 0.4f ? 0 : share < 0.7f ? 1 : share < 0.9f ? 2 : 3; }
-
-// The surface faces a sensor that it sees at less than 75°.
-constexpr float kFacingCosine = 0.26f;
+std::uint8_t continuityBin(float share) {
+  return static_cast<std::uint8_t>((share >= 0.4f) + (share >= 0.7f) + (share >= 0.9f));
+}
 
 std::uint8_t occlusionBin(int hidden) { return hidden < 2 ? 0 : hidden == 2 ? 1 : hidden < 5 ? 2 : 3; }
 
@@ -31,7 +32,10 @@ struct MissCounts {
 };
 
 class Hearing {
-  static constexpr int kTile = 16;
+  static constexpr int kTile = 16, kSquare = 128;
+  // Runs that one neighbour is asked about before the next is: as long as what they look at lies in few
+  // pages.
+  static constexpr std::size_t kGroup = 32;
 
  public:
   Hearing(const std::vector<View>& views, const std::vector<CompactSurface>& surfaces,
@@ -42,38 +46,34 @@ class Hearing {
         sensor_(sensor),
         index_(index),
         neighbours_(neighbours),
-        alternatives_(alternatives) {
+        alternatives_(alternatives),
+        unprojector_(views[index].projection, views[index].world_from_camera) {
     for (const std::size_t other : neighbours) {
       projectors_.emplace_back(views[other].projection, views[other].world_from_camera);
-      noise_.emplace_back(sensor, views[other].projection);
+      variances_.emplace_back(sensor, views[other].projection);
     }
   }
 
   Image<PixelTestimony> hear(MissCounts& misses) const {
     const Image<float>& depth = views_[index_].map.depth;
     Image<PixelTestimony> result(depth.width(), depth.height(), {}, depth.memory());
-    for (const PixelRun& run : collectRuns()) {
-      const PointBlock block(run.points);
-      Inquiry inquiry = inquire(run);
+    const std::vector<PixelRun> runs = collectRuns();
+    std::vector<Inquiry> inquiries(std::min(kGroup, runs.size()));
+    for (std::size_t first = 0; first < runs.size(); first += kGroup) {
+      const auto group = std::span(runs).subspan(first, std::min(kGroup, runs.size() - first));
+      for (std::size_t r = 0; r < group.size(); ++r) inquiries[r] = inquire(group[r]);
       for (std::size_t k = 0; k < projectors_.size(); ++k) {
-        if (projectors_[k].mightSee(block.centre, block.radius)) ask(k, block, inquiry);
+        for (std::size_t r = 0; r < group.size(); ++r) {
+          const PointBlock& block = *inquiries[r].block;
+          if (projectors_[k].mightSee(block.centre, block.radius)) ask(k, inquiries[r]);
+        }
       }
-      for (std::size_t i = 0; i < run.pixels.size(); ++i) {
-        const Answers& answers = inquiry.answers[i];
-        if (answers.agreeing >= kConfirmed)
-          misses.missed += answers.missed, misses.looked += answers.missed + answers.agreeing;
-        result.data()[run.pixels[i]] = testimonyOf(run.pixels[i], answers);
-      }
+      for (std::size_t r = 0; r < group.size(); ++r) settle(group[r], inquiries[r].answers, misses, result);
     }
     return result;
   }
 
  private:
-  // What was answered about a pixel; at most NeighbourOptions::count each.
-  struct Answers {
-    std::uint16_t agreeing = 0, past = 0, missed = 0, hidden = 0;
-  };
-
   // Pixels that are asked about together.
   struct PixelRun {
     std::vector<std::size_t> pixels;
@@ -82,38 +82,49 @@ class Hearing {
 
   // What neighbours need to know of the pixels of a run, and what they answer.
   struct Inquiry {
-    std::vector<float> noise;              // standard deviations; PointBlock::kCapacity of them
-    std::vector<Eigen::Vector3f> normals;  // zero where unknown
-    std::vector<Measured> said;            // by the neighbour that is being asked
-    std::vector<Answers> answers;          // by all so far
+    std::optional<PointBlock> block;
+    alignas(64) std::array<float, PointBlock::kCapacity> noise{};  // standard deviations
+    BlockNormals normals{};
+    BlockAnswers answers;  // by all so far
   };
 
+  // Runs that follow each other lie in one square of the image, and so in the images of the neighbours,
+  // whichever way those are turned.
   std::vector<PixelRun> collectRuns() const {
     const Image<float>& depth = views_[index_].map.depth;
     std::vector<PixelRun> runs;
-    for (int y = 0; y < depth.height(); y += kTile) {
-      for (int x = 0; x < depth.width(); x += kTile) {
-        if (runs.empty() || runs.back().points.size() + kTile * kTile > PointBlock::kCapacity)
-          runs.emplace_back();
-        addTile(x, y, runs.back());
-      }
+    for (int top = 0; top < depth.height(); top += kSquare) {
+      for (int left = 0; left < depth.width(); left += kSquare) addSquare(left, top, runs);
     }
-    if (!runs.empty() && runs.back().points.empty()) runs.pop_back();
     return runs;
   }
 
+  void addSquare(int left, int top, std::vector<PixelRun>& runs) const {
+    const Image<float>& depth = views_[index_].map.depth;
+    const int right = std::min(left + kSquare, depth.width()),
+              bottom = std::min(top + kSquare, depth.height());
+    PixelRun run;
+    for (int y = top; y < bottom; y += kTile) {
+      for (int x = left; x < right; x += kTile) {
+        addTile(x, y, run);
+        if (run.points.size() + kTile * kTile <= PointBlock::kCapacity) continue;
+        runs.push_back(std::move(run));
+        run = {};
+      }
+    }
+    if (!run.points.empty()) runs.push_back(std::move(run));
+  }
+
   Inquiry inquire(const PixelRun& run) const {
-    const std::size_t count = run.pixels.size();
-    Inquiry inquiry{std::vector<float>(PointBlock::kCapacity), std::vector<Eigen::Vector3f>(count),
-                    std::vector<Measured>(count), std::vector<Answers>(count)};
-    for (std::size_t i = 0; i < count; ++i) {
+    Inquiry inquiry;
+    inquiry.block.emplace(run.points);
+    for (std::size_t i = 0; i < run.pixels.size(); ++i) {
       inquiry.noise[i] = static_cast<float>(sensor_.noise.at(views_[index_].map.depth.data()[run.pixels[i]]));
-      inquiry.normals[i] = surfaces_[index_].normal.data()[run.pixels[i]].unpack();
+      inquiry.normals[i] = surfaces_[index_].normal.data()[run.pixels[i]];
     }
     return inquiry;
   }
 
-  // Tiles stay together in the images of the neighbours, whichever way those are turned.
   void addTile(int left, int top, PixelRun& run) const {
     const View& view = views_[index_];
     const int right = std::min(left + kTile, view.map.depth.width()),
@@ -122,94 +133,68 @@ class Hearing {
       for (int x = left; x < right; ++x) {
         if (view.map.depth(x, y) == kInvalidDepth) continue;
         run.pixels.push_back(static_cast<std::size_t>(y * view.map.depth.width() + x));
-        run.points.push_back(worldPoint(view, x, y));
+        run.points.push_back(unprojector_(x, y, view.map.depth(x, y)));
       }
     }
   }
 
-  PixelTestimony testimonyOf(std::size_t pixel, const Answers& answers) const {
+  PixelTestimony testimonyOf(std::size_t pixel, const BlockAnswers& answers, std::size_t i) const {
     PixelTestimony testimony;
     testimony.measured = true;
-    testimony.agreement = capped(answers.agreeing, PixelTestimony::kAgreements) & 7u;
-    testimony.contradiction = capped(answers.past, PixelTestimony::kContradictions) & 3u;
-    testimony.occlusion = occlusionBin(answers.hidden) & 3u;
-    testimony.misses = capped(answers.missed, PixelTestimony::kMisses) & 7u;
+    testimony.agreement = capped(answers.agreeing[i], PixelTestimony::kAgreements) & 7u;
+    testimony.contradiction = capped(answers.past[i], PixelTestimony::kContradictions) & 3u;
+    testimony.occlusion = occlusionBin(answers.hidden[i]) & 3u;
+    testimony.misses = capped(answers.missed[i], PixelTestimony::kMisses) & 7u;
     testimony.continuity = surfaces_[index_].continuity.data()[pixel] & 3u;
     return testimony;
   }
 
-  void ask(std::size_t k, const PointBlock& block, Inquiry& inquiry) const {
+  void settle(const PixelRun& run, const BlockAnswers& answers, MissCounts& misses,
+              Image<PixelTestimony>& result) const {
+    for (std::size_t i = 0; i < run.pixels.size(); ++i) {
+      if (answers.agreeing[i] >= kConfirmed)
+        misses.missed += answers.missed[i], misses.looked += answers.missed[i] + answers.agreeing[i];
+      result.data()[run.pixels[i]] = testimonyOf(run.pixels[i], answers, i);
+    }
+  }
+
+  void ask(std::size_t k, Inquiry& inquiry) const {
     const std::size_t other = neighbours_[k];
+    const PointBlock& block = *inquiry.block;
     const BlockLook seen = look(projectors_[k], block);
-    prefetch(views_[other].map.depth.data(), seen, block.size);
-    answer(k, other, seen, inquiry);
+    prefetch({views_[other].map.depth.data(), surfaces_[other].normal.data()}, seen, block.size);
+    BlockComparison said = answer(k, other, seen, block.size, inquiry);
     if (other < alternatives_.size()) {
-      for (const std::size_t layer : alternatives_[other]) askAlternative(k, layer, seen, inquiry);
+      for (const std::size_t layer : alternatives_[other])
+        prefer(answer(k, layer, seen, block.size, inquiry), block.size, said);
     }
-    if (!views_[other].map.mask.empty()) lookPastObject(views_[other].map, seen, inquiry.said);
-    for (std::size_t i = 0; i < block.size; ++i) {
-      Answers& answers = inquiry.answers[i];
-      switch (inquiry.said[i]) {
-        case Measured::Unseen:
-          break;
-        case Measured::Same:
-          ++answers.agreeing;
-          break;
-        case Measured::Further:
-          ++answers.past;
-          break;
-        case Measured::Nothing:
-          ++answers.missed;
-          break;
-        case Measured::Nearer:
-          answers.hidden += faces(inquiry.normals[i], other, block.point(i));
-      }
-    }
+    if (!views_[other].map.mask.empty()) lookPastObject(views_[other].map, seen, block.size, said);
+    count(said, inquiry.normals, views_[other].world_from_camera.translation(), block, inquiry.answers);
   }
 
   // What view `index`, neighbour k or an alternative of it, says where it saw the points.
-  void answer(std::size_t k, std::size_t index, const BlockLook& seen, Inquiry& inquiry) const {
-    const BlockComparison comparison = compare(views_[index].map.depth.data(), noise_[k], kAgreeSigmas,
-                                               inquiry.noise.data(), seen, inquiry.said.size());
-    const PackedNormal* normals = surfaces_[index].normal.data();
-    for (std::size_t i = 0; i < inquiry.said.size(); ++i) {
-      inquiry.said[i] = comparison[i];
-      // A surface that is turned away is another, which hides the point.
-      if (comparison[i] == Measured::Same && turnsAway(inquiry.normals[i], normals[seen.pixel[i]]))
-        inquiry.said[i] = Measured::Nearer;
+  BlockComparison answer(std::size_t k, std::size_t index, const BlockLook& seen, std::size_t size,
+                         const Inquiry& inquiry) const {
+    BlockComparison comparison = compare(views_[index].map.depth.data(), variances_[k], kAgreeSigmas,
+                                         inquiry.noise.data(), seen, size);
+    tellSidesApart(inquiry.normals, surfaces_[index].normal.data(), seen, size, comparison);
+    return comparison;
+  }
+
+  // A view agrees when any of its hypotheses does.
+  static void prefer(const BlockComparison& alternative, std::size_t size, BlockComparison& said) {
+    for (std::size_t i = 0; i < size; ++i) {
+      if (alternative[i] == Measured::Same) said.words[i] = alternative.words[i];
     }
   }
 
-  // Unknown normals do not.
-  static bool turnsAway(const Eigen::Vector3f& normal, PackedNormal other) {
-    if (normal.isZero() || other.isNone()) return false;
-    const Eigen::Vector3f direction = other.direction();
-    const float along = normal.dot(direction);
-    return along < 0 || along * along < kAgreeCosine * kAgreeCosine * direction.squaredNorm();
-  }
-
-  void askAlternative(std::size_t k, std::size_t layer, const BlockLook& seen, Inquiry& inquiry) const {
-    const std::vector<Measured> said = inquiry.said;
-    answer(k, layer, seen, inquiry);
-    for (std::size_t i = 0; i < said.size(); ++i) {
-      if (inquiry.said[i] != Measured::Same) inquiry.said[i] = said[i];
-    }
-  }
-
-  static void lookPastObject(const DepthMap& map, const BlockLook& seen, std::vector<Measured>& said) {
-    for (std::size_t i = 0; i < said.size(); ++i) {
+  static void lookPastObject(const DepthMap& map, const BlockLook& seen, std::size_t size,
+                             BlockComparison& said) {
+    for (std::size_t i = 0; i < size; ++i) {
       const int pixel = seen.pixel[i];
       if (pixel >= 0 && isOutsideMask(map, pixel % map.depth.width(), pixel / map.depth.width()))
-        said[i] = Measured::Further;
+        said.words[i] = static_cast<std::int32_t>(Measured::Further);
     }
-  }
-
-  // An unknown normal may face anything.
-  bool faces(const Eigen::Vector3f& normal, std::size_t view, const Eigen::Vector3d& point) const {
-    if (normal.isZero()) return true;
-    const Eigen::Vector3f to_sensor = (views_[view].world_from_camera.translation() - point).cast<float>();
-    const float along = normal.dot(to_sensor);
-    return along > 0 && along * along > kFacingCosine * kFacingCosine * to_sensor.squaredNorm();
   }
 
   const std::vector<View>& views_;
@@ -218,21 +203,25 @@ class Hearing {
   std::size_t index_;
   const std::vector<std::size_t>& neighbours_;
   const std::vector<std::vector<std::size_t>>& alternatives_;
+  Unprojector unprojector_;
   std::vector<Projector> projectors_;
-  std::vector<NoiseTable> noise_;
+  std::vector<LookupVariance> variances_;
 };
 
 }  // namespace
 
-CompactSurface compact(const PixelSurface& surface, std::pmr::memory_resource* memory) {
-  const int width = surface.normal.width(), height = surface.normal.height();
+CompactSurface analyseCompactly(const View& view, const NoiseLaw& noise) {
+  const int width = view.map.depth.width(), height = view.map.depth.height();
+  std::pmr::memory_resource* const memory = view.memory();
   CompactSurface result{Image<PackedNormal>(width, height, {}, memory),
                         Image<std::uint8_t>(width, height, 0, memory),
-                        Image<float>(surface.incidence, memory)};
-  std::transform(surface.normal.begin(), surface.normal.end(), result.normal.begin(),
-                 [](const Eigen::Vector3f& normal) { return PackedNormal(normal); });
-  std::transform(surface.continuity.begin(), surface.continuity.end(), result.continuity.begin(),
-                 continuityBin);
+                        Image<float>(width, height, 0, memory)};
+  forEachSurfaceRow(view, noise, [&](int y, const SurfaceRow& row) {
+    packNormals(row, result.normal.row(y));
+    std::copy_n(row.incidence.begin(), width, result.incidence.row(y));
+    std::transform(row.continuity.begin(), row.continuity.begin() + width, result.continuity.row(y),
+                   continuityBin);
+  });
   return result;
 }
 

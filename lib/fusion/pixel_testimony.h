@@ -48,7 +48,8 @@ struct CompactSurface {
   Image<std::uint8_t> continuity;  ///< bin
   Image<float> incidence;
 };
-CompactSurface compact(const PixelSurface& surface, std::pmr::memory_resource* memory);
+/// analyseSurface() of a view, in its memory.
+CompactSurface analyseCompactly(const View& view, const NoiseLaw& noise);
 void letGo(const CompactSurface& surface);
 
 struct Testimonies {

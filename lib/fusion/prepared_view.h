@@ -55,6 +55,28 @@ class NoiseTable {
   std::array<float, kSteps + 1> values_{}, bounds_{};
 };
 
+/// lookupNoise()² without a table: the squares of footprints, whatever the projection, are polynomials of the
+/// depth of second degree at most.
+struct LookupVariance {
+  LookupVariance(const SensorModel& sensor, const Projection& projection)
+      : constant(static_cast<float>(sensor.noise.constant)),
+        linear(static_cast<float>(sensor.noise.linear)),
+        quadratic(static_cast<float>(sensor.noise.quadratic)),
+        vertex(quadratic > 0 && linear < 0 ? -0.5f * linear / quadratic : 0.0f) {
+    const auto slack = [&](double depth) {
+      const double whole = lookupNoise(sensor, projection, depth), noise = sensor.noise.at(depth);
+      return whole * whole - noise * noise;
+    };
+    const double none = slack(0), one = slack(1), two = slack(2), curve = 0.5 * (two - 2 * one + none);
+    slack0 = static_cast<float>(none), slack1 = static_cast<float>(one - none - curve);
+    slack2 = static_cast<float>(curve);
+  }
+
+  float constant, linear, quadratic;
+  float vertex;  ///< the noise does not change at smaller depths
+  float slack0, slack1, slack2;
+};
+
 /// Says whether no pixel says anything of its whole ray.
 inline bool allNothing(const Image<Look>& looks) {
   // Every byte is its neighbour's: the fastest way to look at all of them.

@@ -24,7 +24,7 @@ std::vector<CompactSurface> analyseAll(const std::vector<View>& views, const Noi
   surfaces.reserve(views.size());
   ProgressStep step(progress, "analyse surfaces", views.size());
   forEachView(views, [&](const View& view) {
-    surfaces.push_back(compact(analyseSurface(view, noise), view.memory()));
+    surfaces.push_back(analyseCompactly(view, noise));
     letGo(surfaces.back());
     step.advance();
   });
@@ -35,10 +35,13 @@ void setOutliers(const Testimonies& testimonies, const std::vector<Image<std::ui
                  const ReliabilityTable& table, std::vector<JudgedView>& views) {
   parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
     const Image<PixelTestimony>& said = testimonies.views[i];
+    const std::uint8_t* bins = confidence[i].empty() ? nullptr : confidence[i].data();
+    float* outlier = views[i].outlier.data();
     for (std::size_t p = 0; p < said.size(); ++p) {
-      const std::size_t c = confidence[i].empty() ? 0 : confidence[i].data()[p];
-      const double outlier = said.data()[p].measured ? table.outlier(c, said.data()[p]) : kMaxOutlier;
-      views[i].outlier.data()[p] = std::clamp(static_cast<float>(outlier), kMinOutlier, kMaxOutlier);
+      const PixelTestimony& of_pixel = said.data()[p];
+      outlier[p] = of_pixel.measured ? std::clamp(table.outlier(bins == nullptr ? 0 : bins[p], of_pixel),
+                                                  kMinOutlier, kMaxOutlier)
+                                     : kMaxOutlier;
     }
     letGo(views[i].outlier), letGo(said), letGo(confidence[i]);
   });
@@ -83,8 +86,14 @@ void setNoReturns(const std::vector<std::size_t>& unmasked, JudgeOptions::NoRetu
 
 // Takes back what was called empty where others measured a surface; all of it in views that missed so much.
 void takeBackMissed(const std::vector<std::size_t>& order,
-                    const std::vector<std::vector<std::size_t>>& neighbours, const Box& domain,
+                    const std::vector<std::vector<std::size_t>>& neighbours,
+                    const std::vector<Image<PixelTestimony>>& testimonies, const Box& domain,
                     std::vector<JudgedView>& views) {
+  std::vector<PixelList> missed(views.size());
+  parallelFor(views.size(), 1, [&](std::size_t i, std::size_t) {
+    missed[i] = missedPixels(views[i], testimonies[i]);
+    letGo(views[i]), letGo(testimonies[i]);
+  });
   const Neighbourhoods around{order, neighbours, windowBytes(views.front().memory()),
                               [&](std::size_t i) { return imageBytes(views[i]); },
                               [&](std::size_t i) { letGo(views[i]); }};
@@ -93,11 +102,12 @@ void takeBackMissed(const std::vector<std::size_t>& order,
     JudgedView& view = views[i];
     const auto before = std::count(view.look.begin(), view.look.end(), Look::Empty);
     if (before == 0) return;
-    setLook(emptyRegions(view.depth, view.outlier, missedSurfaces(views, i, neighbours[i], domain)), view);
-    const auto missed = before - std::count(view.look.begin(), view.look.end(), Look::Empty);
+    setLook(emptyRegions(view.depth, view.outlier, missedSurfaces(views, i, neighbours[i], missed, domain)),
+            view);
+    const auto taken_back = before - std::count(view.look.begin(), view.look.end(), Look::Empty);
     const auto without = std::count(view.depth.begin(), view.depth.end(), kInvalidDepth);
     const auto met = static_cast<std::ptrdiff_t>(view.depth.size()) - without;
-    if (static_cast<double>(missed) > kMissesTooMuch * static_cast<double>(missed + met))
+    if (static_cast<double>(taken_back) > kMissesTooMuch * static_cast<double>(taken_back + met))
       std::fill(view.look.begin(), view.look.end(), Look::Nothing);
   });
 }
@@ -152,7 +162,6 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
   judged.miss_rate = testimonies.miss_rate;
   for (std::size_t i = 0; i < count; ++i) judged.views[i].weight = weights[i];
   setOutliers(testimonies, confidence, table, judged.views);
-  setNoReturns(unmasked, options.no_return, judged.views);
   result.domain = options.domain ? *options.domain : supportedDomain(judged);
   widenRange(judged, result.domain);
 
@@ -160,10 +169,10 @@ Judgement judge(std::vector<View> views, const SensorModel& sensor, const ViewGr
     examineDenial(judged, result.domain, testimonies, progress);
     table = learnReliability(testimonies, confidence);
     setOutliers(testimonies, confidence, table, judged.views);
-    setNoReturns(unmasked, options.no_return, judged.views);
   }
+  setNoReturns(unmasked, options.no_return, judged.views);
   if (options.no_return == JudgeOptions::NoReturn::Auto)
-    takeBackMissed(path, around, result.domain, judged.views);
+    takeBackMissed(path, around, testimonies.views, result.domain, judged.views);
   for (std::size_t i = 0; i < count; ++i) {
     weighAlternatives(alternatives, i, testimonies, confidence[i], table, surfaces, judged.views[i]);
     letGo(judged.views[i]), letGo(confidence[i]);

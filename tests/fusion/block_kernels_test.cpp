@@ -105,21 +105,21 @@ TEST(BlockKernels, TheTestimonyOfABlockIsTheExactRatioOfEachPoint) {
   }
 }
 
-TEST(BlockKernels, ComparingABlockIsComparingEachPointWithAndWithoutATableOfTheNoise) {
+TEST(BlockKernels, ComparingABlockIsComparingEachPoint) {
   constexpr float kSigmas = 3.0f;
   for (const double far : {4.0, std::numeric_limits<double>::infinity()}) {
     OneView scene;
     JudgedView& view = scene.judged.views.front();
     for (std::size_t p = 0; p < view.depth.size(); p += 7) view.depth.data()[p] = kInvalidDepth;
     scene.judged.sensor.far = far;
-    const NoiseTable noise(scene.judged.sensor, view.projection);
-    ASSERT_EQ(noise.isTabulated(), std::isfinite(far));
+    const LookupVariance variance(scene.judged.sensor, view.projection);
     const auto points = randomPoints(500, Eigen::Vector3d::Zero(), 0.8);
     std::vector<float> own(PointBlock::kCapacity);
     Random random(11);
     for (float& n : own) n = static_cast<float>(random.uniform(0.0, 0.2));
     const BlockLook seen = look(Projector(view.projection, view.world_from_camera), PointBlock(points));
-    const BlockComparison found = compare(view.depth.data(), noise, kSigmas, own.data(), seen, points.size());
+    const BlockComparison found =
+        compare(view.depth.data(), variance, kSigmas, own.data(), seen, points.size());
     std::map<Measured, int> counts;
     for (std::size_t i = 0; i < points.size(); ++i) {
       ++counts[found[i]];
@@ -132,7 +132,8 @@ TEST(BlockKernels, ComparingABlockIsComparingEachPointWithAndWithoutATableOfTheN
         EXPECT_EQ(found[i], Measured::Nothing) << i;
         continue;
       }
-      const float limit = kSigmas * std::hypot(own[i], noise.at(measured));
+      const double noise = lookupNoise(scene.judged.sensor, view.projection, measured);
+      const auto limit = static_cast<float>(kSigmas * std::hypot(own[i], noise));
       if (std::abs(std::abs(further) - limit) < 1e-5f) continue;  // either
       EXPECT_EQ(found[i], std::abs(further) < limit ? Measured::Same
                           : further > 0             ? Measured::Further

@@ -180,8 +180,7 @@ TEST(Judge, ADepthOutsideTheMaskIsBackground) {
 TEST(Judge, NeighboursContradictAPointOutsideTheirMasks) {
   std::vector<View> views = test::sphereViews(24);
   std::vector<CompactSurface> surfaces;
-  for (const View& view : views)
-    surfaces.push_back(compact(analyseSurface(view, test::sphereSensor().noise), view.memory()));
+  for (const View& view : views) surfaces.push_back(analyseCompactly(view, test::sphereSensor().noise));
   std::vector<std::size_t> order(views.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto neighbours = chooseNeighbours(ViewGraph(test::headersOf(views), 1.7), views.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projection of many world points into one view: the transform prepared once, the common pinhole inlined.
+// Projection of many world points into one view, and back: the transform prepared once, the common pinhole
+// inlined.
 #pragma once
 
 #include <array>
@@ -113,6 +114,32 @@ class Projector {
   Eigen::Matrix3d rotation_;
   Eigen::Vector3d translation_;
   int width_, height_;
+};
+
+/// World points of many pixels of one view.
+class Unprojector {
+ public:
+  Unprojector(const Projection& projection, const RigidTransform& world_from_camera)
+      : projection_(projection), world_from_camera_(world_from_camera) {
+    const Pinhole* pinhole = std::get_if<Pinhole>(&projection);
+    if (pinhole == nullptr || isDistorted(*pinhole)) return;
+    const auto& rotation = world_from_camera.linear();
+    per_x_ = rotation.col(0) / pinhole->fx, per_y_ = rotation.col(1) / pinhole->fy;
+    corner_ = rotation.col(2) - pinhole->cx * per_x_ - pinhole->cy * per_y_;
+    is_pinhole_ = true;
+  }
+
+  Eigen::Vector3d operator()(double x, double y, double depth) const {
+    if (!is_pinhole_) return world_from_camera_ * unproject(projection_, x, y, depth);
+    return world_from_camera_.translation() + depth * (corner_ + x * per_x_ + y * per_y_);
+  }
+
+ private:
+  Projection projection_;
+  RigidTransform world_from_camera_;
+  bool is_pinhole_ = false;
+  /// The ray of pixel (0, 0) at depth 1, and its change a pixel.
+  Eigen::Vector3d corner_ = Eigen::Vector3d::Zero(), per_x_ = corner_, per_y_ = corner_;
 };
 
 }  // namespace vdbfuse
