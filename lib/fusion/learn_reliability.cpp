@@ -77,10 +77,9 @@ std::vector<double> countOutcomes(const Testimonies& testimonies,
     counts.assign(kOutcomes, 0);
     for (std::size_t i = begin; i < end; ++i) {
       const Image<T>& view = testimonies.views[i];
-      for (std::size_t p = 0; p < view.size(); ++p) {
-        if (!view.data()[p].measured) continue;
-        ++counts[outcome(confidence[i].empty() ? 0 : confidence[i].data()[p], view.data()[p])];
-      }
+      const std::uint8_t* bins = confidence[i].empty() ? nullptr : confidence[i].data();
+      forEachMeasured(
+          view, [&](std::size_t p) { ++counts[outcome(bins == nullptr ? 0 : bins[p], view.data()[p])]; });
       letGo(view), letGo(confidence[i]);
     }
   });
@@ -145,7 +144,8 @@ std::uint8_t ConfidenceBins::binOf(float confidence) const {
   if (!std::isfinite(confidence)) return 0;
   // Bisection without branches: they cannot be foreseen.
   unsigned bin = 0;
-  for (const unsigned half : {16u, 8u, 4u, 2u, 1u}) bin += search_[bin + half - 1] <= confidence ? half : 0;
+  for (const unsigned half : {16u, 8u, 4u, 2u, 1u})
+    bin += half * static_cast<unsigned>(search_[bin + half - 1] <= confidence);
   return static_cast<std::uint8_t>(bin);
 }
 

@@ -2,6 +2,9 @@
 // What the other views say of each pixel of a view, in a few bins.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <vector>
 
 #include "fusion/packed_normal.h"
@@ -41,6 +44,22 @@ struct PixelTestimony {
 };
 
 static_assert(sizeof(PixelTestimony) == 2);
+
+/// Calls visit(number of the pixel) where something was measured. Passes over the empty space around an
+/// object eight pixels at a time.
+template <class Visit>
+void forEachMeasured(const Image<PixelTestimony>& testimony, const Visit& visit) {
+  constexpr std::size_t kStep = 8;
+  constexpr std::array<PixelTestimony, kStep> kNothing{};
+  const PixelTestimony* pixels = testimony.data();
+  for (std::size_t p = 0; p < testimony.size();) {
+    const std::size_t end = std::min(p + kStep, testimony.size());
+    if (end - p == kStep && std::memcmp(pixels + p, kNothing.data(), sizeof kNothing) == 0) p = end;
+    for (; p < end; ++p) {
+      if (pixels[p].measured) visit(p);
+    }
+  }
+}
 
 /// What judging keeps of the surface around each pixel (PixelSurface): nine bytes.
 struct CompactSurface {

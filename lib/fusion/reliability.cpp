@@ -37,12 +37,11 @@ void setOutliers(const Testimonies& testimonies, const std::vector<Image<std::ui
     const Image<PixelTestimony>& said = testimonies.views[i];
     const std::uint8_t* bins = confidence[i].empty() ? nullptr : confidence[i].data();
     float* outlier = views[i].outlier.data();
-    for (std::size_t p = 0; p < said.size(); ++p) {
-      const PixelTestimony& of_pixel = said.data()[p];
-      outlier[p] = of_pixel.measured ? std::clamp(table.outlier(bins == nullptr ? 0 : bins[p], of_pixel),
-                                                  kMinOutlier, kMaxOutlier)
-                                     : kMaxOutlier;
-    }
+    std::fill_n(outlier, said.size(), kMaxOutlier);
+    forEachMeasured(said, [&](std::size_t p) {
+      const float learned = table.outlier(bins == nullptr ? 0 : bins[p], said.data()[p]);
+      outlier[p] = std::min(std::max(learned, kMinOutlier), kMaxOutlier);
+    });
     letGo(views[i].outlier), letGo(said), letGo(confidence[i]);
   });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long calibrating and judging take on many small views:
-//   judge_benchmark [views=1000] [width=160]
+//   judge_benchmark [views=1000] [width=160] [wall]
+// `wall`: one is measured behind the object, so that every pixel has a depth.
 // Wall-clock seconds of each step and of the parts that report progress, and nanoseconds a (pixel, neighbour)
 // pair. Loading includes rendering the scan.
 #include <chrono>
@@ -33,8 +34,10 @@ int main(int argc, char** argv) {
   synth.views = argc > 1 ? std::atoi(argv[1]) : 1000;
   synth.width = argc > 2 ? std::atoi(argv[2]) : 160;
   synth.height = synth.width * 3 / 4;
-  if (synth.views < 2 || synth.width < 16) {
-    std::fprintf(stderr, "usage: judge_benchmark [views] [width]\n");
+  const bool has_wall = argc > 3 && std::string(argv[3]) == "wall";
+  if (has_wall) synth.background = Background::Wall;
+  if (synth.views < 2 || synth.width < 16 || (argc > 3 && !has_wall)) {
+    std::fprintf(stderr, "usage: judge_benchmark [views] [width] [wall]\n");
     return 2;
   }
   const SyntheticScan scan(makeScene("figure"), hardened(synth));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -142,6 +143,76 @@ TEST(BlockKernels, ComparingABlockIsComparingEachPoint) {
     }
     EXPECT_EQ(counts.size(), 5u);  // each was seen
   }
+}
+
+// What one view answers about random points with random normals, some unknown.
+struct Asked {
+  Asked() : points(randomPoints(500, Eigen::Vector3d(5, 0, 0), 0.8)), image(40) {
+    Random random(13);
+    const auto anyNormal = [&] {
+      const Eigen::Vector3f n(static_cast<float>(random.normal()), static_cast<float>(random.normal()),
+                              static_cast<float>(random.normal()));
+      return random.uniform() < 0.2 ? PackedNormal() : PackedNormal(n.normalized());
+    };
+    std::generate(image.begin(), image.end(), anyNormal);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      normals[i] = anyNormal();
+      said.words[i] = static_cast<std::int32_t>(random.uniform(0, 5));
+      seen.pixel[i] = said[i] == Measured::Unseen ? -1 : static_cast<std::int32_t>(random.uniform(0, 40));
+    }
+  }
+
+  std::vector<Eigen::Vector3d> points;
+  std::vector<PackedNormal> image;
+  BlockNormals normals;
+  BlockComparison said;
+  BlockLook seen;
+};
+
+TEST(BlockKernels, ASurfaceThatIsTurnedAwayIsAnother) {
+  const Asked asked;
+  BlockComparison told = asked.said;
+  tellSidesApart(asked.normals, asked.image.data(), asked.seen, asked.points.size(), told);
+  int turned = 0, kept = 0;
+  for (std::size_t i = 0; i < asked.points.size(); ++i) {
+    if (asked.said[i] != Measured::Same) {
+      EXPECT_EQ(told[i], asked.said[i]) << i;
+      continue;
+    }
+    const PackedNormal own = asked.normals[i],
+                       other = asked.image[static_cast<std::size_t>(asked.seen.pixel[i])];
+    const float cosine = own.unpack().dot(other.unpack());
+    const bool turns = !own.isNone() && !other.isNone() && cosine < std::sqrt(0.5f);
+    if (std::abs(cosine - std::sqrt(0.5f)) > 1e-3f) {
+      EXPECT_EQ(told[i], turns ? Measured::Nearer : Measured::Same) << i;
+    }
+    ++(turns ? turned : kept);
+  }
+  EXPECT_GT(std::min(turned, kept), 10);
+}
+
+TEST(BlockKernels, AnswersAreCountedAndWhoIsHiddenMustFaceTheSensor) {
+  const Asked asked;
+  const PointBlock block(asked.points);
+  const Eigen::Vector3d sensor(5, 1, 0);  // among the points
+  BlockAnswers answers;
+  count(asked.said, asked.normals, sensor, block, answers);
+  count(asked.said, asked.normals, sensor, block, answers);
+  int faced = 0, averted = 0;
+  for (std::size_t i = 0; i < asked.points.size(); ++i) {
+    EXPECT_EQ(answers.agreeing[i], asked.said[i] == Measured::Same ? 2 : 0) << i;
+    EXPECT_EQ(answers.past[i], asked.said[i] == Measured::Further ? 2 : 0) << i;
+    EXPECT_EQ(answers.missed[i], asked.said[i] == Measured::Nothing ? 2 : 0) << i;
+    const Eigen::Vector3f ray = (sensor - asked.points[i]).normalized().cast<float>();
+    const float cosine = asked.normals[i].unpack().dot(ray);
+    const bool faces = asked.normals[i].isNone() || cosine > 0.26f;
+    const bool is_hidden = asked.said[i] == Measured::Nearer;
+    if (std::abs(cosine - 0.26f) > 1e-3f) {
+      EXPECT_EQ(answers.hidden[i], is_hidden && faces ? 2 : 0) << i;
+    }
+    if (is_hidden) ++(faces ? faced : averted);
+  }
+  EXPECT_GT(std::min(faced, averted), 10);
 }
 
 // Points that are all on the same side take a shorter way.

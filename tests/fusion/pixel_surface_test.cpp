@@ -5,6 +5,7 @@
 
 #include "fusion/packed_normal.h"
 #include "fusion/scenes.h"
+#include "fusion/surface_kernels.h"
 
 namespace vdbfuse {
 namespace {
@@ -43,14 +44,48 @@ TEST(PixelSurface, TheNormalsOfASpherePointAwayFromItsCentre) {
   EXPECT_GT(count, 3000);
 }
 
-TEST(PixelSurface, OnePixelAloneHasTheSameNormal) {
-  std::vector<View> views = test::sphereViews(1);
+// A sphere with noise, holes and a background that begins anywhere.
+View brokenSphere(int width, int height) {
+  Pinhole camera = test::cameraFor(64, 0.5, 2.0);
+  camera.width = width, camera.height = height, camera.fy *= 1.1;
+  std::vector<View> views{castView({0.9, -1.2, 1.3}, {0, 0, 0}, camera, test::sphereCaster(0.5))};
   test::addNoise(views, {0.004, 0, 0}, 2);
-  const NoiseLaw noise{0.004, 0, 0};
-  const PixelSurface surface = analyseSurface(views[0], noise);
-  for (int i = 0; i < 64; ++i) {
-    for (const int y : {0, 17, 40, 63})
-      EXPECT_EQ(surfaceNormal(views[0], noise, i, y), surface.normal(i, y)) << i << " " << y;
+  Random random(7);
+  for (float& d : views[0].map.depth) {
+    if (random.uniform() < 0.1) d = kInvalidDepth;
+    if (random.uniform() < 0.1) d = static_cast<float>(random.uniform(1.0, 3.0));
+  }
+  return views[0];
+}
+
+const NoiseLaw kFallingNoise{0.012, -0.008, 0.002};  // the least at 2
+
+TEST(PixelSurface, OnePixelAloneHasTheSameNormal) {
+  const View view = brokenSphere(61, 59);
+  const PixelSurface surface = analyseSurface(view, kFallingNoise);
+  int known = 0;
+  for (int x = 0; x < 61; ++x) {
+    for (const int y : {0, 17, 30, 40, 58}) {
+      const Eigen::Vector3f alone = surfaceNormal(view, kFallingNoise, x, y);
+      EXPECT_LT((alone - surface.normal(x, y)).norm(), 1e-4f) << x << " " << y;
+      known += !alone.isZero();
+    }
+  }
+  EXPECT_GT(known, 80);
+}
+
+// A distortion of nothing goes the way of all projections, pixel by pixel.
+TEST(PixelSurface, ManyPixelsOfAPinholeAtATimeAreWhatTheyAreOneByOne) {
+  for (const int width : {61, 16, 5}) {
+    View view = brokenSphere(width, 59);
+    const PixelSurface together = analyseSurface(view, kFallingNoise);
+    std::get<Pinhole>(view.projection).distortion[0] = 1e-13;
+    const PixelSurface alone = analyseSurface(view, kFallingNoise);
+    EXPECT_EQ(together.continuity, alone.continuity);
+    for (std::size_t p = 0; p < alone.normal.size(); ++p) {
+      ASSERT_LT((together.normal.data()[p] - alone.normal.data()[p]).norm(), 1e-4f) << p;
+      ASSERT_NEAR(together.incidence.data()[p], alone.incidence.data()[p], 1e-4f) << p;
+    }
   }
 }
 
@@ -71,6 +106,26 @@ TEST(PackedNormal, KeepsDirectionsToATenThousandth) {
   }
   EXPECT_TRUE(PackedNormal().isNone());
   EXPECT_TRUE(PackedNormal(Eigen::Vector3f::Zero()).unpack().isZero());
+}
+
+TEST(PackedNormal, ARowOfThemIsPackedAsEachIs) {
+  SurfaceRow row(37);
+  Random random(4);
+  std::vector<Eigen::Vector3f> normals;
+  for (std::size_t i = 0; i < 37; ++i) {
+    Eigen::Vector3f n(static_cast<float>(random.normal()), static_cast<float>(random.normal()),
+                      static_cast<float>(random.normal()));
+    if (i < 6) n = (i % 2 == 0 ? 1.0f : -1.0f) * Eigen::Vector3f::Unit(static_cast<Eigen::Index>(i / 2));
+    n = i % 7 == 6 ? Eigen::Vector3f::Zero() : Eigen::Vector3f(n.normalized());
+    row.x[i] = n.x(), row.y[i] = n.y(), row.z[i] = n.z();
+    normals.push_back(n);
+  }
+  std::vector<PackedNormal> packed(37);
+  packNormals(row, packed.data());
+  for (std::size_t i = 0; i < 37; ++i) {
+    EXPECT_EQ(packed[i].isNone(), normals[i].isZero()) << i;
+    EXPECT_LT((packed[i].unpack() - normals[i]).norm(), 1e-4f) << i;
+  }
 }
 
 TEST(PixelSurface, AStepEndsTheSurface) {

@@ -94,6 +94,18 @@ TEST_P(EveryProjection, TheProjectorAgreesWithProject) {
   EXPECT_GT(inside, 50);
 }
 
+TEST_P(EveryProjection, TheUnprojectorAgreesWithUnproject) {
+  RigidTransform world_from_camera(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()));
+  world_from_camera.translation() = Eigen::Vector3d(3, -2, 1);
+  const Unprojector unprojector(sensor, world_from_camera);
+  for (int i = 0; i < 100; ++i) {
+    const double x = random.uniform(0, imageWidth(sensor)), y = random.uniform(0, imageHeight(sensor)),
+                 depth = random.uniform(0.5, 5);
+    const Eigen::Vector3d expected = world_from_camera * unproject(sensor, x, y, depth);
+    EXPECT_LT((unprojector(x, y, depth) - expected).norm(), 1e-12);
+  }
+}
+
 TEST_P(EveryProjection, NumbersThatCannotBeAreReported) {
   EXPECT_TRUE(validate(sensor).empty());
   std::visit([](auto& p) { p.width = 0; }, sensor);
