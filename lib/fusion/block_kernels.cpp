@@ -434,7 +434,11 @@ BlockLook look(const Projector& projector, const PointBlock& block) {
   return result;
 }
 
-void prefetch(std::initializer_list<const void*> images, const BlockLook& look, std::size_t size) {
+void prefetch(const float* image, const BlockLook& look, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) __builtin_prefetch(image + std::max(look.pixel[i], 0));
+}
+
+void prefetchLines(std::initializer_list<const void*> images, const BlockLook& look, std::size_t size) {
   constexpr std::int32_t kLine = 16;  // pixels of a line of the cache
   std::int32_t last = -1;
   for (std::size_t i = 0; i < size; ++i) {
@@ -448,7 +452,8 @@ void prefetch(std::initializer_list<const void*> images, const BlockLook& look, 
 
 BlockLook look(const PreparedView& view, const PointBlock& block) {
   const BlockLook result = look(view.projector, block);
-  prefetch({view.view->depth.data(), view.view->outlier.data()}, result, block.size);
+  prefetch(view.view->depth.data(), result, block.size);
+  prefetch(view.view->outlier.data(), result, block.size);
   return result;
 }
 

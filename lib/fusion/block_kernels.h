@@ -16,9 +16,12 @@ namespace vdbfuse {
 /// point within 1e-4 pixels of the border between two pixels may be given to either.
 BlockLook look(const Projector& projector, const PointBlock& block);
 
-/// Starts loading the pixels, of four bytes each, of images that were looked up: waiting for them is most of
-/// a kernel's time otherwise.
-void prefetch(std::initializer_list<const void*> images, const BlockLook& look, std::size_t size);
+/// Starts loading the pixels of an image that were looked up: waiting for them is most of a kernel's time
+/// otherwise.
+void prefetch(const float* image, const BlockLook& look, std::size_t size);
+
+/// The same for images of four bytes a pixel, where points that follow each other mostly lie side by side.
+void prefetchLines(std::initializer_list<const void*> images, const BlockLook& look, std::size_t size);
 
 /// look(), and what testify() will read is on its way.
 BlockLook look(const PreparedView& view, const PointBlock& block);

@@ -162,7 +162,7 @@ class Hearing {
     const std::size_t other = neighbours_[k];
     const PointBlock& block = *inquiry.block;
     const BlockLook seen = look(projectors_[k], block);
-    prefetch({views_[other].map.depth.data(), surfaces_[other].normal.data()}, seen, block.size);
+    prefetchLines({views_[other].map.depth.data(), surfaces_[other].normal.data()}, seen, block.size);
     BlockComparison said = answer(k, other, seen, block.size, inquiry);
     if (other < alternatives_.size()) {
       for (const std::size_t layer : alternatives_[other])
