@@ -132,6 +132,7 @@ class TestimonyGrid {
     const std::size_t count = bricks_.size() * PointBlock::kCapacity;
     sums_.assign(count * kNodes, 0.0f);
     reports_.assign(count, 0.0f);
+    with_all_.assign(count, 0.0f);
     without_.assign(count, 0.0f);
     smallest_.assign(bricks_.size() * kOctants, kNobodyDenies);
     ProgressStep progress_step(progress, "weigh views", bricks_.size() * judged_.views.size());
@@ -144,8 +145,8 @@ class TestimonyGrid {
       });
     });
     forEachBrick([&](Brick& brick, std::size_t first) {
-      logMeans(integral_, &sums_[first * kNodes], PointBlock::kCapacity, &without_[first]);
-      brick.sure = smallestOf(first);
+      logMeans(integral_, &sums_[first * kNodes], PointBlock::kCapacity, &with_all_[first]);
+      brick.sure = *std::min_element(&with_all_[first], &with_all_[first] + PointBlock::kCapacity);
     });
   }
 
@@ -162,17 +163,8 @@ class TestimonyGrid {
       if (!view.projector.mightSee(brick.block.centre, brick.block.radius + step_)) return;
       const auto sight = camera(lowCorner(first), static_cast<float>(kBrick * step_));
       if (sight && sight->nearest > furthestIn(depths, *sight)) return;
-      std::array<float, PointBlock::kCapacity * kNodes> sums;
-      std::array<float, PointBlock::kCapacity> reports;
-      std::copy_n(&sums_[first * kNodes], sums.size(), sums.begin());
-      std::copy_n(&reports_[first], reports.size(), reports.begin());
-      add(view, brick.block, -kOwnWeight, sums.data(), reports.data());
-      float* const evidence = &without_[first];
-      logMeans(integral_, sums.data(), reports.size(), evidence);
-      for (std::size_t i = 0; i < reports.size(); ++i)
-        evidence[i] +=
-            static_cast<float>(std::min(kPriorOfOutside, integral_.halfDenial(std::max(reports[i], 0.0f))));
-      smallestOfOctants(evidence, smallest);
+      leaveOut(view, brick, first);
+      smallestOfOctants(&without_[first], smallest);
     });
     DenialTiles tiles(view.view->depth.width(), view.view->depth.height());
     for (std::size_t i = 0; i < smallest_.size(); ++i) {
@@ -251,16 +243,37 @@ class TestimonyGrid {
     return points;
   }
 
-  float smallestOf(std::size_t first) const {
-    return *std::min_element(&without_[first], &without_[first] + PointBlock::kCapacity);
-  }
-
   // visit(brick, index of its first point), in parallel; each brick has one owner.
   template <class Visit>
   void forEachBrick(const Visit& visit) {
     parallelFor(bricks_.size(), 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) visit(bricks_[i], i * PointBlock::kCapacity);
     });
+  }
+
+  // Finds `without_` of a brick, no larger than kNobodyDenies. Without a view that says log L the evidence is
+  // no less than with it by more than that, so that most points need not be looked at.
+  void leaveOut(const PreparedView& view, const Brick& brick, std::size_t first) {
+    const BlockTestimony said = testify(view, ratio_, 0.0f, look(view, brick.block), brick.block.size);
+    BlockTestimony taken;
+    std::array<float, PointBlock::kCapacity * kNodes> sums;
+    std::array<std::size_t, PointBlock::kCapacity> points;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < brick.block.size; ++i) {
+      without_[first + i] = kNobodyDenies;
+      if (with_all_[first + i] - std::max(said.log_ratio[i], 0.0f) > kNobodyDenies) continue;
+      std::copy_n(&sums_[(first + i) * kNodes], kNodes, &sums[count * kNodes]);
+      taken.log_ratio[count] = said.log_ratio[i], taken.share[count] = said.share[i];
+      points[count++] = first + i;
+    }
+    accumulate(integral_, taken, -kOwnWeight, count, sums.data());
+    std::array<float, PointBlock::kCapacity> evidence;
+    logMeans(integral_, sums.data(), count, evidence.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const float reports = std::max(reports_[points[i]] - kOwnWeight * taken.share[i], 0.0f);
+      const double denial = std::min(kPriorOfOutside, integral_.halfDenial(reports));
+      without_[points[i]] = std::min(evidence[i] + static_cast<float>(denial), kNobodyDenies);
+    }
   }
 
   // What the sums hold is what the pixel at the grid point said, which may be a neighbour of the one
@@ -280,8 +293,9 @@ class TestimonyGrid {
   LikelihoodRatio ratio_;
   VisibilityIntegral integral_;
   std::vector<Brick> bricks_;
-  std::vector<float> sums_, reports_, without_;  ///< brick by brick
-  std::vector<float> smallest_;                  ///< of `without_` in each octant of each brick
+  std::vector<float> sums_, reports_;      ///< brick by brick
+  std::vector<float> with_all_, without_;  ///< evidence of all views, and without the one left out
+  std::vector<float> smallest_;            ///< of `without_` in each octant of each brick
 };
 
 // A ray that comes in flat is near to the surface, and to grid points behind it, for longer.
