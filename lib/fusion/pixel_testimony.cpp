@@ -61,7 +61,7 @@ class Hearing {
     std::vector<Inquiry> inquiries(std::min(kGroup, runs.size()));
     for (std::size_t first = 0; first < runs.size(); first += kGroup) {
       const auto group = std::span(runs).subspan(first, std::min(kGroup, runs.size() - first));
-      for (std::size_t r = 0; r < group.size(); ++r) inquiries[r] = inquire(group[r]);
+      for (std::size_t r = 0; r < group.size(); ++r) prepare(group[r], inquiries[r]);
       for (std::size_t k = 0; k < projectors_.size(); ++k) {
         for (std::size_t r = 0; r < group.size(); ++r) {
           const PointBlock& block = *inquiries[r].block;
@@ -76,6 +76,7 @@ class Hearing {
  private:
   // Pixels that are asked about together.
   struct PixelRun {
+    PixelRun() { pixels.reserve(PointBlock::kCapacity), points.reserve(PointBlock::kCapacity); }
     std::vector<std::size_t> pixels;
     std::vector<Eigen::Vector3d> points;
   };
@@ -115,14 +116,13 @@ class Hearing {
     if (!run.points.empty()) runs.push_back(std::move(run));
   }
 
-  Inquiry inquire(const PixelRun& run) const {
-    Inquiry inquiry;
+  void prepare(const PixelRun& run, Inquiry& inquiry) const {
     inquiry.block.emplace(run.points);
     for (std::size_t i = 0; i < run.pixels.size(); ++i) {
       inquiry.noise[i] = static_cast<float>(sensor_.noise.at(views_[index_].map.depth.data()[run.pixels[i]]));
       inquiry.normals[i] = surfaces_[index_].normal.data()[run.pixels[i]];
     }
-    return inquiry;
+    inquiry.answers = {};
   }
 
   void addTile(int left, int top, PixelRun& run) const {
