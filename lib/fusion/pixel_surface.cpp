@@ -149,28 +149,34 @@ PinholeSurface prepare(const Pinhole& camera, const View& view, const NoiseLaw& 
   return surface;
 }
 
-using RowAnalysis = std::function<void(int y, SurfaceRow& row)>;
-
-RowAnalysis rowAnalysis(const View& view, const NoiseLaw& noise) {
-  const Pinhole* camera = std::get_if<Pinhole>(&view.projection);
-  if (camera == nullptr || isDistorted(*camera))
-    return
-        [analysis = SurfaceAnalysis(view, noise)](int y, SurfaceRow& row) { analyseRow(analysis, y, row); };
-  return [surface = prepare(*camera, view, noise), depth = PaddedDepth(view.map.depth)](
-             int y, SurfaceRow& row) { analyseRow(surface, depth, y, row); };
+// Calls analyse(y, row) and visit(y, row) for rows [begin, end).
+template <class Analyse, class Visit>
+void visitRows(int width, int begin, int end, const Analyse& analyse, const Visit& visit) {
+  SurfaceRow row(width);
+  for (int y = begin; y < end; ++y) analyse(y, row), visit(y, row);
 }
 
 }  // namespace
 
 void forEachSurfaceRow(const View& view, const NoiseLaw& noise,
                        const std::function<void(int y, const SurfaceRow& row)>& visit) {
-  const RowAnalysis analyse = rowAnalysis(view, noise);
-  parallelFor(static_cast<std::size_t>(view.map.depth.height()), 16, [&](std::size_t begin, std::size_t end) {
-    SurfaceRow row(view.map.depth.width());
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      analyse(y, row);
-      visit(y, row);
+  const Image<float>& depth = view.map.depth;
+  const Pinhole* camera = std::get_if<Pinhole>(&view.projection);
+  if (camera != nullptr && isDistorted(*camera)) camera = nullptr;
+  const std::optional<PinholeSurface> surface =
+      camera == nullptr ? std::nullopt : std::optional(prepare(*camera, view, noise));
+  const SurfaceAnalysis analysis(view, noise);
+  parallelFor(static_cast<std::size_t>(depth.height()), 16, [&](std::size_t first, std::size_t last) {
+    const auto begin = static_cast<int>(first), end = static_cast<int>(last);
+    if (!surface) {
+      visitRows(
+          depth.width(), begin, end, [&](int y, SurfaceRow& row) { analyseRow(analysis, y, row); }, visit);
+      return;
     }
+    const PaddedDepth padded(depth, begin, end);
+    visitRows(
+        depth.width(), begin, end, [&](int y, SurfaceRow& row) { analyseRow(*surface, padded, y, row); },
+        visit);
   });
 }
 

@@ -199,13 +199,15 @@ HWY_EXPORT(packRow);
 
 }  // namespace
 
-PaddedDepth::PaddedDepth(const Image<float>& depth)
-    : depth_(depth.width() + 2 * kRadius + SurfaceRow::kLanes, depth.height() + 2 * kRadius),
+PaddedDepth::PaddedDepth(const Image<float>& depth, int begin, int end)
+    : begin_(begin),
+      depth_(depth.width() + 2 * kRadius + SurfaceRow::kLanes, end - begin + 2 * kRadius),
       inverse_(depth_) {
-  for (int y = 0; y < depth.height(); ++y) {
+  for (int y = std::max(begin - kRadius, 0); y < std::min(end + kRadius, depth.height()); ++y) {
     const float* row = depth.row(y);
-    std::copy_n(row, depth.width(), depth_.row(y + kRadius) + kRadius);
-    std::transform(row, row + depth.width(), inverse_.row(y + kRadius) + kRadius,
+    const int place = y - begin + kRadius;
+    std::copy_n(row, depth.width(), depth_.row(place) + kRadius);
+    std::transform(row, row + depth.width(), inverse_.row(place) + kRadius,
                    [](float d) { return d > 0 ? 1.0f / d : 0.0f; });
   }
 }

@@ -23,18 +23,21 @@ struct SurfaceRow {
   std::vector<float> incidence, continuity;
 };
 
-/// Depths and their inverses with zeros around, so that neighbourhoods need no care at the border.
+/// Some rows of depths and of their inverses with zeros around, so that neighbourhoods need no care at the
+/// border.
 class PaddedDepth {
  public:
   static constexpr int kRadius = 2;
 
-  explicit PaddedDepth(const Image<float>& depth);
+  /// For neighbourhoods of the pixels of rows [begin, end).
+  PaddedDepth(const Image<float>& depth, int begin, int end);
 
-  /// From pixel 0 on; kRadius pixels before it and above and below the image can be read, too.
-  const float* depth(int y) const { return depth_.row(y + kRadius) + kRadius; }
-  const float* inverse(int y) const { return inverse_.row(y + kRadius) + kRadius; }
+  /// From pixel 0 on; kRadius pixels before it and above and below the rows can be read, too.
+  const float* depth(int y) const { return depth_.row(y - begin_ + kRadius) + kRadius; }
+  const float* inverse(int y) const { return inverse_.row(y - begin_ + kRadius) + kRadius; }
 
  private:
+  int begin_;
   Image<float> depth_, inverse_;
 };
 
