@@ -32,6 +32,26 @@ Outcome outcomeAt(std::size_t index) {
   return {index, answer, continuity, denial};
 }
 
+// How many pixels gave each answer, and how many of them the posterior so far takes for wrong.
+struct AnswerCounts {
+  std::array<double, T::kAnswers> all{}, bad{};
+
+  AnswerCounts(const std::vector<double>& counts, const std::vector<float>& table) {
+    for (std::size_t k = 0; k < kOutcomes; ++k) {
+      const std::size_t answer = outcomeAt(k).answer;
+      all[answer] += counts[k], bad[answer] += counts[k] * table[k];
+    }
+  }
+
+  // p(answer | outlier)/p(answer | inlier), which leans on what is `expected` by one pixel.
+  double ratio(std::size_t answer, double expected) const {
+    const double total = std::accumulate(all.begin(), all.end(), 0.0),
+                 bad_total = std::accumulate(bad.begin(), bad.end(), 0.0);
+    return (bad[answer] + expected) / (bad_total + 1) /
+           ((all[answer] - bad[answer] + 1) / (total - bad_total + 1));
+  }
+};
+
 // p(answer | outlier)/p(answer | inlier), to an order of magnitude: rounded from the shares of wrong pixels
 // in the scenario matrix, where factors of two change little. Chance rarely makes a neighbour agree, but the
 // neighbours' own mistakes often make one see past a point that is there: one that agrees outweighs any that
@@ -56,6 +76,13 @@ class AnswerRatios {
     }
   }
   double of(std::size_t answer) const { return ratios_[answer]; }
+  // One step of Bayes' rule: to be hidden or missed says no more against a pixel than it does in these data,
+  // where it may be the lot of right pixels in hollows above all. It may acquit only. On a clean scan, whose
+  // few outliers are such pixels, and right, it would condemn them for being so many.
+  void acquit(const AnswerCounts& counts) {
+    for (std::size_t answer = T::kAgreements * T::kContradictions; answer < T::kAnswers; ++answer)
+      ratios_[answer] = std::min(ratios_[answer], counts.ratio(answer, ratios_[answer]));
+  }
   // What teaches how many outliers there are: who is confirmed or contradicted, and half as much (in the
   // logarithm) who is hidden or missed. That is also the lot of right pixels in hollows, and made outliers of
   // them on scans that have none: 1 % of pixels at a ratio of 200 are explained best by 0.6 % of outliers.
@@ -112,6 +139,16 @@ void hearDenial(const std::vector<double>& counts, std::vector<float>& table) {
     const double against = table[k] * ratioOf(outcomeAt(k).denial);
     table[k] = static_cast<float>(against / (against + 1 - table[k]));
   }
+}
+
+// Of everything that can be observed of a pixel but for denial.
+std::vector<float> posteriors(const OutlierModel& model, const AnswerRatios& ratios) {
+  std::vector<float> table;
+  for (std::size_t k = 0; k < kOutcomes; ++k) {
+    const Outcome o = outcomeAt(k);
+    table.push_back(static_cast<float>(model.outlierGiven(ratios.of(o.answer), o.continuity, o.confidence)));
+  }
+  return table;
 }
 
 }  // namespace
@@ -181,7 +218,7 @@ void ReliabilityTable::describe(const std::vector<double>& counts) {
 ReliabilityTable learnReliability(const Testimonies& testimonies,
                                   const std::vector<Image<std::uint8_t>>& confidence) {
   const std::vector<double> counts = countOutcomes(testimonies, confidence);
-  const AnswerRatios ratios(testimonies.miss_rate);
+  AnswerRatios ratios(testimonies.miss_rate);
   std::vector<OutlierCell> cells;
   for (std::size_t k = 0; k < kOutcomes; ++k) {
     const Outcome o = outcomeAt(k);
@@ -190,11 +227,9 @@ ReliabilityTable learnReliability(const Testimonies& testimonies,
   const OutlierModel model = fitOutliers(cells, T::kContinuities, kConfidences);
 
   ReliabilityTable result;
-  for (std::size_t k = 0; k < kOutcomes; ++k) {
-    const Outcome o = outcomeAt(k);
-    result.table_.push_back(
-        static_cast<float>(model.outlierGiven(ratios.of(o.answer), o.continuity, o.confidence)));
-  }
+  result.table_ = posteriors(model, ratios);
+  ratios.acquit({counts, result.table_});
+  result.table_ = posteriors(model, ratios);
   hearDenial(counts, result.table_);
   result.describe(counts);
   return result;

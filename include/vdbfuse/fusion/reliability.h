@@ -41,7 +41,7 @@ struct JudgeOptions {
   /// borders and no other view measured anything there; a view that misses a fifth of what it might have met
   /// is not believed at all.
   enum class NoReturn { Ignore, Free, Auto } no_return = NoReturn::Auto;
-  /// The second pass, leave-one-out denial; costs about as much as the first.
+  /// The second pass, leave-one-out denial; costs about half as much as the first.
   enum class Denial { Skip, Examine } denial = Denial::Examine;
   /// World box of the reconstruction; default: found after the first pass.
   std::optional<Box> domain;
