@@ -89,18 +89,19 @@ class DenialTiles {
       : first_((width + kSide - 1) / kSide, (height + kSide - 1) / kSide, std::numeric_limits<float>::max()) {
   }
 
-  void mark(const std::optional<BoxSight>& box) {
+  void markAll() { std::fill(first_.begin(), first_.end(), 0.0f); }
+
+  void mark(const BoxSight& box) {
     constexpr float kSlack = 1;  // pixels
-    if (!box) return std::fill(first_.begin(), first_.end(), 0.0f);
     const auto tile = [](float pixel, int count) {
       return static_cast<int>(std::clamp(std::floor(pixel / kSide), -1.0f, static_cast<float>(count)));
     };
-    const int left = std::max(tile(box->left - kSlack, first_.width()), 0),
-              right = std::min(tile(box->right + kSlack, first_.width()), first_.width() - 1);
-    const int top = std::max(tile(box->top - kSlack, first_.height()), 0),
-              bottom = std::min(tile(box->bottom + kSlack, first_.height()), first_.height() - 1);
+    const int left = std::max(tile(box.left - kSlack, first_.width()), 0),
+              right = std::min(tile(box.right + kSlack, first_.width()), first_.width() - 1);
+    const int top = std::max(tile(box.top - kSlack, first_.height()), 0),
+              bottom = std::min(tile(box.bottom + kSlack, first_.height()), first_.height() - 1);
     for (int y = top; y <= bottom; ++y) {
-      for (int x = left; x <= right; ++x) first_(x, y) = std::min(first_(x, y), box->nearest);
+      for (int x = left; x <= right; ++x) first_(x, y) = std::min(first_(x, y), box.nearest);
     }
   }
 
@@ -150,7 +151,7 @@ class TestimonyGrid {
     });
   }
 
-  // From now on smallestOnRay() is about what all views but this one say, on rays of this one. Says where it
+  // From now on findSmallest() is about what all views but this one say, on rays of this one. Says where it
   // need not be asked.
   DenialTiles leaveOut(const PreparedView& view) {
     const BoxCamera camera(view.projector, low_);
@@ -168,8 +169,13 @@ class TestimonyGrid {
     });
     DenialTiles tiles(view.view->depth.width(), view.view->depth.height());
     for (std::size_t i = 0; i < smallest_.size(); ++i) {
-      if (smallest_[i] < kNobodyDenies)
-        tiles.mark(camera(lowCorner(i * kOctant), static_cast<float>(kHalf * step_)));
+      if (smallest_[i] >= kNobodyDenies) continue;
+      const auto octant = camera(lowCorner(i * kOctant), static_cast<float>(kHalf * step_));
+      if (!octant) {
+        tiles.markAll();
+        break;
+      }
+      tiles.mark(*octant);
     }
     return tiles;
   }

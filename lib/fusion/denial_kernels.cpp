@@ -85,8 +85,11 @@ void march(const BrickedEvidence& evidence, float most, RayBatch& rays) {
     const Axis ax = axisOf(&rays.start[0][i], &rays.way[0][i], per_length, points[0]),
                ay = axisOf(&rays.start[1][i], &rays.way[1][i], per_length, points[1]),
                az = axisOf(&rays.start[2][i], &rays.way[2][i], per_length, points[2]);
-    FloatVec steps = hn::Floor(hn::Mul(hn::Load(d, &rays.safe[i]), length)), last = length;
+    FloatVec steps = hn::Zero(d), last = length;
     clip(ax, steps, last), clip(ay, steps, last), clip(az, steps, last);
+    // In whole steps, so that the same points are met.
+    const FloatVec safe = hn::Sub(hn::Mul(hn::Load(d, &rays.safe[i]), length), steps);
+    steps = hn::Add(steps, hn::Floor(hn::Max(safe, hn::Zero(d))));
     FloatVec smallest = number(most);
     for (auto active = hn::Le(steps, last); !hn::AllFalse(d, active); active = hn::Le(steps, last)) {
       const Place px = placeOf(ax, steps), py = placeOf(ay, steps), pz = placeOf(az, steps);

@@ -56,6 +56,25 @@ TEST(Denial, NobodyDeniesWhatIsThere) {
   }
 }
 
+// Of a pinhole that is distorted by nothing it is not known where its rays go, so that all are followed all
+// the way.
+TEST(Denial, WhatIsPassedOverWouldHaveSaidNothing) {
+  JudgedViews judged = drilled();
+  const Testimonies plain = examined(judged);
+  for (JudgedView& view : judged.views) std::get<Pinhole>(view.projection).distortion[0] = 1e-13;
+  const Testimonies bent = examined(judged);
+  int examined_pixels = 0, denied = 0, different = 0;
+  for (std::size_t i = 0; i < plain.views.size(); ++i) {
+    for (std::size_t p = 0; p < plain.views[i].size(); ++p) {
+      const auto one = plain.views[i].data()[p].denial, other = bent.views[i].data()[p].denial;
+      examined_pixels += judged.views[i].depth.data()[p] != kInvalidDepth;
+      denied += other < kNobody, different += one != other;
+    }
+  }
+  EXPECT_GT(denied, 1000);
+  EXPECT_LT(different, examined_pixels / 1000);  // points on the border of two pixels
+}
+
 // With the incidence known, flat rays are examined less far.
 TEST(Denial, NorWhereRaysAreKnownToComeInFlat) {
   JudgedViews judged = sphere(48);
