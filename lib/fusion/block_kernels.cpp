@@ -175,10 +175,10 @@ void testifySingle(const PreparedView& view, const LikelihoodRatio& ratio, float
 }
 
 FloatVec varianceAt(const LookupVariance& v, FloatVec depth) {
-  const Floats df;
   const auto set = [](float value) HWY_ATTR { return hn::Set(Floats(), value); };
-  const FloatVec d = hn::Max(depth, hn::Set(df, v.vertex));
-  const FloatVec noise = hn::MulAdd(d, hn::MulAdd(d, set(v.quadratic), set(v.linear)), set(v.constant));
+  const NoiseCurve& n = v.noise;
+  const FloatVec d = hn::Max(depth, set(n.vertex));
+  const FloatVec noise = hn::MulAdd(d, hn::MulAdd(d, set(n.quadratic), set(n.linear)), set(n.constant));
   const FloatVec slack = hn::MulAdd(depth, hn::MulAdd(depth, set(v.slack2), set(v.slack1)), set(v.slack0));
   return hn::MulAdd(noise, noise, slack);
 }

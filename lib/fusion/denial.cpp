@@ -44,7 +44,7 @@ struct Brick {
   float sure = std::numeric_limits<float>::max();  ///< no less than this of any point, by all views
 };
 
-// Where a box lies in an image: pixels, and the depth of its nearest corner.
+// The pixels that may see a box, and the depth of its nearest corner.
 struct BoxSight {
   float left, top, right, bottom, nearest;
 };
@@ -59,6 +59,7 @@ class BoxCamera {
   std::optional<BoxSight> operator()(const Eigen::Vector3f& low, float side) const {
     if (!rows_) return std::nullopt;
     constexpr float kFar = std::numeric_limits<float>::max();
+    constexpr float kSlack = 1;  // pixels
     BoxSight sight{kFar, kFar, -kFar, -kFar, kFar};
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3f place =
@@ -66,8 +67,8 @@ class BoxCamera {
       const float depth = row(2, place);
       if (!(depth > 0)) return std::nullopt;
       const float u = row(0, place) / depth, v = row(1, place) / depth;
-      sight.left = std::min(sight.left, u), sight.right = std::max(sight.right, u);
-      sight.top = std::min(sight.top, v), sight.bottom = std::max(sight.bottom, v);
+      sight.left = std::min(sight.left, u - kSlack), sight.right = std::max(sight.right, u + kSlack);
+      sight.top = std::min(sight.top, v - kSlack), sight.bottom = std::max(sight.bottom, v + kSlack);
       sight.nearest = std::min(sight.nearest, depth);
     }
     return sight;
@@ -92,14 +93,13 @@ class DenialTiles {
   void markAll() { std::fill(first_.begin(), first_.end(), 0.0f); }
 
   void mark(const BoxSight& box) {
-    constexpr float kSlack = 1;  // pixels
     const auto tile = [](float pixel, int count) {
       return static_cast<int>(std::clamp(std::floor(pixel / kSide), -1.0f, static_cast<float>(count)));
     };
-    const int left = std::max(tile(box.left - kSlack, first_.width()), 0),
-              right = std::min(tile(box.right + kSlack, first_.width()), first_.width() - 1);
-    const int top = std::max(tile(box.top - kSlack, first_.height()), 0),
-              bottom = std::min(tile(box.bottom + kSlack, first_.height()), first_.height() - 1);
+    const int left = std::max(tile(box.left, first_.width()), 0),
+              right = std::min(tile(box.right, first_.width()), first_.width() - 1);
+    const int top = std::max(tile(box.top, first_.height()), 0),
+              bottom = std::min(tile(box.bottom, first_.height()), first_.height() - 1);
     for (int y = top; y <= bottom; ++y) {
       for (int x = left; x <= right; ++x) first_(x, y) = std::min(first_(x, y), box.nearest);
     }
@@ -108,7 +108,7 @@ class DenialTiles {
   float at(int x, int y) const { return first_(x / kSide, y / kSide); }
 
  private:
-  static constexpr int kSide = 8;
+  static constexpr int kSide = DepthTiles::kSide;
   Image<float> first_;
 };
 
@@ -163,7 +163,9 @@ class TestimonyGrid {
       // A ray is nearest to points up to half a step outside the image.
       if (!view.projector.mightSee(brick.block.centre, brick.block.radius + step_)) return;
       const auto sight = camera(lowCorner(first), static_cast<float>(kBrick * step_));
-      if (sight && sight->nearest > furthestIn(depths, *sight)) return;
+      // Nor do its rays go so far.
+      if (sight && sight->nearest > depths.over(sight->left, sight->top, sight->right, sight->bottom).most)
+        return;
       leaveOut(view, brick, first);
       smallestOfOctants(&without_[first], smallest);
     });
@@ -216,12 +218,6 @@ class TestimonyGrid {
     const Eigen::Array3i corner = kBrick * Eigen::Array3i(brick % nx, brick / nx % ny, brick / nx / ny) +
                                   kHalf * Eigen::Array3i(octant & 1, octant >> 1 & 1, octant >> 2);
     return (corner.cast<double>() * step_).cast<float>().matrix();
-  }
-
-  // Of the measurements whose rays might meet a box.
-  static float furthestIn(const DepthTiles& depths, const BoxSight& box) {
-    constexpr float kSlack = 1;  // pixels
-    return depths.over(box.left - kSlack, box.top - kSlack, box.right + kSlack, box.bottom + kSlack).most;
   }
 
   // Of the octants of a brick.

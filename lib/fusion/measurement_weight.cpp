@@ -32,10 +32,7 @@ void multiply(Image<float>& weights, const Factor& factor) {
 RowWeighting noiseWeighting(const NoiseLaw& noise, double voxel) {
   RowWeighting w;
   w.has_noise = true;
-  w.constant = static_cast<float>(noise.constant), w.linear = static_cast<float>(noise.linear);
-  w.quadratic = static_cast<float>(noise.quadratic);
-  if (noise.quadratic > 0)
-    w.vertex = static_cast<float>(std::max(0.0, -noise.linear / (2 * noise.quadratic)));
+  w.noise = NoiseCurve(noise);
   w.half_voxel_squared = static_cast<float>(0.25 * voxel * voxel);
   return w;
 }

@@ -128,19 +128,13 @@ void analyseRow(const SurfaceAnalysis& analysis, int y, SurfaceRow& row) {
 
 PinholeSurface prepare(const Pinhole& camera, const View& view, const NoiseLaw& noise) {
   const auto in_single = [](double value) { return static_cast<float>(value); };
-  const NoiseLaw reach = noise * kSigmas;
-  PinholeSurface surface{
-      in_single(camera.fx),
-      in_single(camera.fy),
-      in_single(camera.cx),
-      in_single(camera.cy),
-      in_single(reach.constant),
-      in_single(reach.linear),
-      in_single(reach.quadratic),
-      // Depths are not negative.
-      reach.quadratic > 0 && reach.linear < 0 ? in_single(-0.5 * reach.linear / reach.quadratic) : 0.0f,
-      in_single(kSteepestSlope * footprint(camera, 1.0)),
-      {}};
+  PinholeSurface surface{in_single(camera.fx),
+                         in_single(camera.fy),
+                         in_single(camera.cx),
+                         in_single(camera.cy),
+                         NoiseCurve(noise * kSigmas),
+                         in_single(kSteepestSlope * footprint(camera, 1.0)),
+                         {}};
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c)
       surface.world_from_camera[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] =

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "fusion/noise_curve.h"
 #include "vdbfuse/geometry/projector.h"
 #include "vdbfuse/sensor/view_windows.h"
 
@@ -58,22 +59,17 @@ class NoiseTable {
 /// lookupNoise()² without a table: the squares of footprints, whatever the projection, are polynomials of the
 /// depth of second degree at most.
 struct LookupVariance {
-  LookupVariance(const SensorModel& sensor, const Projection& projection)
-      : constant(static_cast<float>(sensor.noise.constant)),
-        linear(static_cast<float>(sensor.noise.linear)),
-        quadratic(static_cast<float>(sensor.noise.quadratic)),
-        vertex(quadratic > 0 && linear < 0 ? -0.5f * linear / quadratic : 0.0f) {
+  LookupVariance(const SensorModel& sensor, const Projection& projection) : noise(sensor.noise) {
     const auto slack = [&](double depth) {
-      const double whole = lookupNoise(sensor, projection, depth), noise = sensor.noise.at(depth);
-      return whole * whole - noise * noise;
+      const double whole = lookupNoise(sensor, projection, depth), own = sensor.noise.at(depth);
+      return whole * whole - own * own;
     };
     const double none = slack(0), one = slack(1), two = slack(2), curve = 0.5 * (two - 2 * one + none);
     slack0 = static_cast<float>(none), slack1 = static_cast<float>(one - none - curve);
     slack2 = static_cast<float>(curve);
   }
 
-  float constant, linear, quadratic;
-  float vertex;  ///< the noise does not change at smaller depths
+  NoiseCurve noise;
   float slack0, slack1, slack2;
 };
 

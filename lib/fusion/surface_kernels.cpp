@@ -136,6 +136,7 @@ HWY_INLINE void storeNormal(const PinholeSurface& surface, int x, int y, const P
 void analysePinholeRow(const PinholeSurface& surface, const PaddedDepth& padded, int y, SurfaceRow& row) {
   const Floats d;
   const FloatVec zero = hn::Zero(d), least = number(kLeastSurfaceNeighbours);
+  const NoiseCurve& reach = surface.reach;
   for (int x = 0; x < row.width; x += static_cast<int>(hn::Lanes(d))) {
     const FloatVec here = hn::LoadU(d, padded.depth(y) + x);
     const FloatMask is_measured = hn::Gt(here, zero);
@@ -143,11 +144,9 @@ void analysePinholeRow(const PinholeSurface& surface, const PaddedDepth& padded,
       storeNothing(x, row);
       continue;
     }
-    const FloatVec risen = hn::Max(here, number(surface.vertex)),
-                   slope = hn::Mul(number(surface.slope), here);
-    const FloatVec noise =
-        hn::MulAdd(risen, hn::MulAdd(risen, number(surface.quadratic), number(surface.linear)),
-                   number(surface.constant));
+    const FloatVec risen = hn::Max(here, number(reach.vertex)), slope = hn::Mul(number(surface.slope), here);
+    const FloatVec noise = hn::MulAdd(risen, hn::MulAdd(risen, number(reach.quadratic), number(reach.linear)),
+                                      number(reach.constant));
     const FloatVec near_reach = hn::Add(noise, slope), far_reach = hn::Add(near_reach, slope);
     PlaneSums sums{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
 #pragma GCC unroll 5

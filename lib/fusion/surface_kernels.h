@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "fusion/noise_curve.h"
 #include "fusion/packed_normal.h"
 #include "vdbfuse/geometry/image.h"
 
@@ -43,9 +44,9 @@ class PaddedDepth {
 
 struct PinholeSurface {
   float fx, fy, cx, cy;
-  /// Depths that differ by no more than constant + linear·d + quadratic·d², d not below `vertex`, plus
-  /// slope·d a pixel belong to one surface.
-  float constant, linear, quadratic, vertex, slope;
+  /// Depths that differ by no more than this curve, plus slope·d a pixel, belong to one surface.
+  NoiseCurve reach;
+  float slope;
   std::array<std::array<float, 3>, 3> world_from_camera;
 };
 

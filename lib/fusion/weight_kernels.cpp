@@ -114,9 +114,9 @@ void weigh(const DepthRows& rows, const RowWeighting& w, float* weights) {
     const auto z = hn::LoadU(d, rows.here + x);
     auto weight = hn::IfThenElseZero(hn::Gt(z, hn::Zero(d)), hn::Set(d, 1.0f));
     if (w.has_noise) {
-      const auto depth = hn::Max(z, hn::Set(d, w.vertex));
-      const auto s = hn::MulAdd(hn::MulAdd(hn::Set(d, w.quadratic), depth, hn::Set(d, w.linear)), depth,
-                                hn::Set(d, w.constant));
+      const auto depth = hn::Max(z, hn::Set(d, w.noise.vertex));
+      const auto s = hn::MulAdd(hn::MulAdd(hn::Set(d, w.noise.quadratic), depth, hn::Set(d, w.noise.linear)),
+                                depth, hn::Set(d, w.noise.constant));
       const auto half = hn::Set(d, w.half_voxel_squared);
       weight = hn::Mul(weight, hn::Div(half, hn::MulAdd(s, s, half)));
     }

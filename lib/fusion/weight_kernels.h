@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "fusion/depth_edges.h"
+#include "fusion/noise_curve.h"
 
 namespace vdbfuse {
 
@@ -27,9 +28,7 @@ void markEdges(const DepthRows& rows, const DepthEdge& edge, const EdgeBits& bit
 /// What a pixel's weight is the product of; see measurement_weight.h.
 struct RowWeighting {
   bool has_noise = false;
-  float constant = 0, linear = 0,
-        quadratic = 0;  ///< s = constant + linear·z + quadratic·z², z not below `vertex`
-  float vertex = 0;
+  NoiseCurve noise;
   float half_voxel_squared = 0;
 
   /// Of a pinhole: rays are (us[x], v, 1); differences of 1/z over `radius` pixels to either side times these

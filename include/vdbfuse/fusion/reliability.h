@@ -41,7 +41,7 @@ struct JudgeOptions {
   /// borders and no other view measured anything there; a view that misses a fifth of what it might have met
   /// is not believed at all.
   enum class NoReturn { Ignore, Free, Auto } no_return = NoReturn::Auto;
-  /// The second pass, leave-one-out denial; costs about half as much as the first.
+  /// The second pass, leave-one-out denial; a third of the time, and most of it with many small views.
   enum class Denial { Skip, Examine } denial = Denial::Examine;
   /// World box of the reconstruction; default: found after the first pass.
   std::optional<Box> domain;
@@ -52,7 +52,8 @@ struct JudgeOptions {
 ///    same surface), learned by EM;
 ///  - what the neighbour views answer: *agreement* (they measured the same point, with normals within 45°),
 ///    *contradiction* (they see past it), and, where there is neither, *occlusion* although the surface faces
-///    them and *misses*; as likelihood ratios known beforehand to an order of magnitude;
+///    them and *misses*; as likelihood ratios known beforehand to an order of magnitude, of which those of
+///    occlusion and misses are lowered where, after the EM, most such pixels are right;
 ///  - the *confidence*, in 20 quantile bins, whose ratios are learned by the same EM: any scale, either
 ///    direction, no harm where it says nothing;
 ///  - *denial*, the smallest evidence of all other views where the pixel claims free space, by one step of
